@@ -39,6 +39,7 @@ def export(
     from automotive_cosim.exchange.recording import read_recording
     from automotive_cosim.exchange.ssam import write_trajectories
     from automotive_cosim.exchange.trajectories import write_csv, write_fcd, write_parquet
+    from automotive_cosim.formats.writing import make_folder
     from automotive_cosim.run.store import cannot_write
 
     formats = filled(ExportFormats, settings)
@@ -48,12 +49,11 @@ def export(
         )
     check_formats(formats)
     recording = read_recording(trial)
-    folder = out or trial / "exchange"
+    folder, written = out or trial / "exchange", []
     road = folder / ROAD if formats.opendrive else None
     trace = trace_name(recording) if formats.osi else ""
-    written = []
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder = make_folder(out) if out else make_folder(trial, "exchange")
         for name, wanted, write in (
             (ROAD, formats.opendrive, _write_road),
             (

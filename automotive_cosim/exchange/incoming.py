@@ -8,7 +8,6 @@ The ego is the cockpit's car, which SUMO's driver drives; other vehicles are inc
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from datetime import datetime
@@ -23,6 +22,8 @@ from automotive_cosim.exchange.catalogs import unread
 from automotive_cosim.exchange.places import RoadPlaces
 from automotive_cosim.exchange.roads import read_roads
 from automotive_cosim.exchange.storyboard import ReadStory, ScriptEntity, Waited, read_story
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.writing import copy, write_whole
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
 from automotive_cosim.traffic.script import EGO as THE_EGO
@@ -69,8 +70,8 @@ def import_openscenario(
     with appearing(out, replaces=replaces) as folder:
         places = RoadPlaces(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
         text = scenario_text(out.name, file, story, places, country)
-        (folder / "scenario.toml").write_text(text, encoding="utf-8")
-        (folder / ROUTES).write_text("<routes/>\n", encoding="utf-8")
+        write_whole(folder / "scenario.toml", text)
+        write_whole(folder / ROUTES, "<routes/>\n")
         write_config(folder / "road.sumocfg", NET, ROUTES, Sumo("road.sumocfg", warm_up_s=0.0))
         load(folder)
     return out
@@ -87,7 +88,7 @@ def road_network(source: Path, folder: Path) -> Any:
         SetupError: netconvert is not installed.
     """
     if source.name.endswith((".net.xml", ".xml")):
-        shutil.copyfile(source, folder / NET)
+        copy(source, folder / NET, bounds.UNPACKED_BYTES)
         return sumolib.net.readNet(str(folder / NET), withInternal=False)
     if source.name.endswith(".xodr"):
         for road in read_roads(source).values():
@@ -104,7 +105,7 @@ def road_network(source: Path, folder: Path) -> Any:
     else:
         ours = f"{NET}.gz"
         words = "-s", ours, "--offset.disable-normalization"
-    shutil.copyfile(source, folder / ours)
+    copy(source, folder / ours, bounds.UNPACKED_BYTES)
     ok, printed = run("netconvert", (*words, "-o", NET), folder)
     if not ok:
         raise ScenarioError(f"netconvert cannot read {source}: {first_error(printed)}")

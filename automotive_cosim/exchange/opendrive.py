@@ -18,7 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats.xml import read_tree
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.writing import copy
+from automotive_cosim.formats.xml import read_tree, write_xml
 from automotive_cosim.traffic.network import drives_on_left
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
@@ -51,14 +53,14 @@ def write_opendrive(net: Path, target: Path) -> None:
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-opendrive-") as name:
         scratch = Path(name)
         ours = "road.net.xml.gz" if net.name.endswith(".gz") else "road.net.xml"
-        (scratch / ours).write_bytes(net.read_bytes())
+        copy(net, scratch / ours, bounds.UNPACKED_BYTES)
         ok, printed = run("netconvert", ("-s", ours, "--opendrive-output=road.xodr"), scratch)
         if not ok:
             raise ScenarioError(f"netconvert cannot write {net} as OpenDRIVE: {first_error(printed)}")
         root = read_tree(scratch / "road.xodr", error=ScenarioError)
     mend(root, left_hand=drives_on_left(net))
     ET.indent(root)
-    ET.ElementTree(root).write(target, encoding="UTF-8", xml_declaration=True)
+    write_xml(target, root)
 
 
 def mend(root: ET.Element, *, left_hand: bool) -> None:

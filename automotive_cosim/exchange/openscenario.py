@@ -23,7 +23,7 @@ from automotive_cosim.contracts import SeenVehicle, Weather
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.exchange.bodies import FRONT_AXLE, GAP_S, REAR_AXLE, WHEEL_M, heading_rad, height_m, place_at
 from automotive_cosim.exchange.recording import Recording
-from automotive_cosim.formats.xml import read_tree
+from automotive_cosim.formats.xml import read_tree, write_xml
 
 VERSIONS = "1.2", "1.3"
 """Of the standard that can be written."""
@@ -72,7 +72,7 @@ def write_openscenario(recording: Recording, target: Path, version: str = "1.3",
         raise UserError(f"OpenSCENARIO {version} cannot be written; give one of {', '.join(VERSIONS)}")
     root = _scenario(recording, version, road)
     ET.indent(root)
-    ET.ElementTree(root).write(target, encoding="UTF-8", xml_declaration=True)
+    write_xml(target, root)
 
 
 def _scenario(recording: Recording, version: str, road: Path | None) -> ET.Element:

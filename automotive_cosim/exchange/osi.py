@@ -12,6 +12,8 @@ OSI recommends, from which readers of ``.osi`` take the kind of its messages.
 
 from __future__ import annotations
 
+import errno
+import tempfile
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,6 +31,7 @@ from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.exchange.bodies import GAP_S, REAR_AXLE, WHEEL_M, heading_rad, height_m, place_at
 from automotive_cosim.exchange.openscenario import FULL, KELVIN, OKTAS
 from automotive_cosim.exchange.recording import Recording
+from automotive_cosim.formats.writing import copy
 from automotive_cosim.run.road import Second
 
 NEEDS = f"OSI traces need the extra osi: {install_hint('osi')}"
@@ -90,19 +93,25 @@ def write_osi(recording: Recording, target: Path, road: Path | None = None) -> N
     from osi_utilities import MultiTraceWriter, SingleTraceWriter
 
     messages = _Messages(recording, "" if road is None else road.name)
-    with MultiTraceWriter() if target.suffix == ".mcap" else SingleTraceWriter() as trace:
-        about = {"version": osi, "zero_time": recording.road.seconds[0].local_time, "description": recording.title}
-        for end in ("min", "max"):
-            about |= {f"{end}_osi_version": osi, f"{end}_protobuf_version": protobuf}
-        if not (trace.open(target, about) if target.suffix == ".mcap" else trace.open(target)):
-            raise OSError(f"cannot open {target}")
-        if target.suffix == ".mcap":
-            channel = {"osi_version": osi, "protobuf_version": protobuf, "description": recording.title}
-            named = {f"net.asam.osi.trace.channel.{name}": value for name, value in channel.items()}
-            trace.add_channel("GroundTruth", messages.truth, named)
-        for message in messages:
-            if not trace.write_message(message):
-                raise OSError(f"cannot write {target}")
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-osi-") as scratch:
+        made = Path(scratch) / target.name  # its library takes no open file
+        with MultiTraceWriter() if target.suffix == ".mcap" else SingleTraceWriter() as trace:
+            about = {
+                "version": osi,
+                "zero_time": recording.road.seconds[0].local_time,
+                "description": recording.title,
+            }
+            for end in ("min", "max"):
+                about |= {f"{end}_osi_version": osi, f"{end}_protobuf_version": protobuf}
+            if not (trace.open(made, about) if target.suffix == ".mcap" else trace.open(made)):
+                raise OSError(errno.EIO, "its library cannot write it", str(target))
+            if target.suffix == ".mcap":
+                channel = {"osi_version": osi, "protobuf_version": protobuf, "description": recording.title}
+                named = {f"net.asam.osi.trace.channel.{name}": value for name, value in channel.items()}
+                trace.add_channel("GroundTruth", messages.truth, named)
+            if not all(map(trace.write_message, messages)):
+                raise OSError(errno.EIO, "its library cannot write it", str(target))
+        copy(made, target, made.stat().st_size)
 
 
 def _versions() -> tuple[str, str]:

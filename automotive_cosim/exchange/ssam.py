@@ -17,7 +17,7 @@ from pathlib import Path
 from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.exchange.bodies import GAP_S, heading_rad
 from automotive_cosim.exchange.recording import Recording
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import write_whole
 
 VERSION = 1.04
 STEPS = 10

@@ -9,7 +9,8 @@ from io import StringIO, TextIOWrapper
 from pathlib import Path
 
 from automotive_cosim.formats import bounds
-from automotive_cosim.formats.files import opened, write_whole
+from automotive_cosim.formats.files import opened
+from automotive_cosim.formats.writing import make_folder, write_whole
 
 
 def csv_text(columns: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
@@ -27,7 +28,7 @@ def write_packed_csv(path: Path, columns: Iterable[object], rows: Iterable[Itera
     Raises:
         OSError: it cannot be written.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     write_whole(path, gzip.compress(csv_text(columns, rows).encode(), mtime=0))
 
 

@@ -1,4 +1,4 @@
-"""Files that users give, texts written by hand and data that may be packed; and files that are written whole."""
+"""Files that users give: texts written by hand, and data that may be packed."""
 
 from __future__ import annotations
 
@@ -14,13 +14,11 @@ import os
 import stat
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
-from automotive_cosim.formats.plain import plain
 
 
 def read_text(path: Path, error: type[UserError] = UserError) -> str:
@@ -274,27 +272,3 @@ def is_utf8(path: Path) -> bool:
     except UnicodeDecodeError:
         return False
     return True
-
-
-@contextmanager
-def drafted(path: Path) -> Iterator[Path]:
-    """A draft beside a file, which takes its place at the end, so that the file is there completely or not at all.
-
-    Raises:
-        OSError: it cannot be written; the error names the file, and not its draft.
-    """
-    draft = path.with_name(f".{path.name}.part")
-    try:
-        yield draft
-        draft.replace(path)
-    except OSError as error:
-        draft.unlink(missing_ok=True)
-        if error.errno is None:
-            raise
-        raise OSError(error.errno, error.strerror, str(path)) from error
-
-
-def write_whole(path: Path, content: str | bytes) -> None:
-    """Writes a file, a text as plain text, as ``drafted`` does."""
-    with drafted(path) as draft:
-        draft.write_bytes(content if isinstance(content, bytes) else plain(content).encode())

@@ -16,6 +16,7 @@ from xml.parsers import expat
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_utf8, opened
+from automotive_cosim.formats.writing import drafted, write_whole
 
 SHARED_ENCODINGS = frozenset(("utf-8", "us-ascii", "ascii", "iso-8859-1", "utf-16"))
 """Encodings that every parser knows."""
@@ -89,7 +90,7 @@ def scan(
         with ExitStack() as open_files:
             file = open_files.enter_context(opened(path))
             open_files.enter_context(_without_collection())
-            target = None if copy is None else open_files.enter_context(copy.open("wb"))
+            target = None if copy is None else open_files.enter_context(drafted(copy))
             size = 0
             while piece := file.read(bounds.CHUNK_BYTES):
                 if target is not None:
@@ -162,3 +163,12 @@ def read_root(path: Path, *, error: type[UserError]) -> ET.Element:
     with suppress(_FoundError):
         scan(path, start, error=error)
     return root
+
+
+def write_xml(path: Path, root: ET.Element) -> None:
+    """Writes a document whole or not at all.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    write_whole(path, ET.tostring(root, encoding="UTF-8", xml_declaration=True))

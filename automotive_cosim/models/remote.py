@@ -7,7 +7,6 @@ log or record: every text about an endpoint passes ``_Endpoint.clean``.
 from __future__ import annotations
 
 import asyncio
-import base64
 import json
 import os
 import re
@@ -20,9 +19,10 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from types import NoneType
 from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
-from urllib.parse import parse_qsl, quote
+from urllib.parse import parse_qsl
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError, install_hint
+from automotive_cosim.formats.keys import hidden
 from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply, believed
 from automotive_cosim.models.refusal import LONGEST_REASON, pause_asked_s, reason, told
@@ -44,8 +44,6 @@ SHORTEST_ASKED_PAUSE_S, LONGEST_ASKED_PAUSE_S = 1.0, 600.0
 """A server that says when to come back has not failed, and its pauses use up no attempt, until they are longer than
 this together, as at the end of a day's quota."""
 OPENAI_URL = "https://api.openai.com/v1"
-SHORTEST_KEY = 12
-"""A shorter key is no secret but a dummy for a local server, and may occur in any answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,28 +146,13 @@ class _Endpoint:
     key: str = field(repr=False)
 
     def clean(self, text: str) -> str:
-        """The text without the key, wherever it came from, as it is or encoded."""
-        for form in forms(self.key) if len(self.key) >= SHORTEST_KEY else ():
-            text = text.replace(form, "***")
-        return text
+        """The text without the key, wherever it came from and however it is spelled."""
+        return hidden(text, self.key)
 
     def url(self, path: str) -> str:
         """The address of a request; a query of the endpoint's own stays at its end."""
         base, mark, query = (self.base_url or OPENAI_URL).partition("?")
         return f"{base.rstrip('/')}{path}{mark}{query}"
-
-
-@cache
-def forms(key: str) -> tuple[str, ...]:
-    """How a key may be written: as it is, in base64 at any place of a longer text, in hexadecimal, in a URL, in
-    JSON, backwards."""
-    data = key.encode()
-    found = [key, data.hex(), data.hex().upper(), quote(key, safe=""), json.dumps(key)[1:-1], key[::-1]]
-    for before in range(3):
-        whole = base64.b64encode(b"\0" * before + data).decode()
-        sure = whole[-(-before * 8 // 6) : (before + len(data)) * 8 // 6]  # what only the key determines
-        found += [sure, sure.translate(str.maketrans("+/", "-_"))]
-    return tuple(dict.fromkeys(found))
 
 
 class _PassingError(Exception):

@@ -12,6 +12,7 @@ from xml.sax.saxutils import quoteattr, unescape
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.osm.barriers import Cut, Piece, cut
 from automotive_cosim.osm.cameras import Cameras, cameras_of
 from automotive_cosim.osm.country import LEFT_HAND
@@ -138,7 +139,7 @@ def convert(
 
     def converted(more: Mapping[str, str]) -> tuple[bool, str]:
         for option, patch in more.items():
-            (scratch / f"signs{option}.xml").write_text(patch, encoding="utf-8")
+            write_whole(scratch / f"signs{option}.xml", patch)
         return run(
             "netconvert",
             (
@@ -186,7 +187,7 @@ def convert(
     if any(road.stated.lanes_forward or road.stated.lanes_backward for road in roads.values()):
         text = _with_lane_signs(text, roads)
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
-    raw.write_text(text, encoding="utf-8")
+    write_whole(raw, text.encode())
     tell("reading the network", None)
     network = read_network(raw)
     cameras = cameras_of(network, extract)
@@ -195,9 +196,9 @@ def convert(
         more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
     if more:
         text = _with_parameters(text, lambda edge_id: more.get(edge_id, {}))
-        raw.write_text(text, encoding="utf-8")
+        write_whole(raw, text.encode())
         network = read_network(raw)
-    target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
+    write_whole(target, gzip.compress(text.encode(), compresslevel=9, mtime=0))
     edges, unlit = tuple(network.edges.values()), tuple(dark(joints, links, goals))
     return Built(network, edges, signals, roundabouts, barred, turns, signs, cameras, links, opened, unlit)
 

@@ -25,6 +25,7 @@ from typing import IO
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.formats.writing import copy, drafted
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.ground import TAGS
 from automotive_cosim.osm.settings import DownloadLimits
@@ -124,11 +125,11 @@ def download(
         },
     )
     try:
-        with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.absolute().parent) as scratch:
+        with tempfile.TemporaryDirectory(prefix="automotive-cosim-map-") as scratch:
             fetched = Path(scratch) / "answer.osm"
             _fetch_patiently(request, fetched, limits, tell, sleep)
             found = _judge(fetched, endpoint)
-            fetched.rename(target)
+            copy(fetched, target, round(limits.size_mb * 1e6))
     except OSError as error:
         raise ImportMapError(f"{target} cannot be written ({error.strerror}); choose another --out") from error
     return found
@@ -177,7 +178,7 @@ def _fetch_patiently(
 def _fetch(request: urllib.request.Request, target: Path, limits: DownloadLimits, tell: Tell) -> None:
     tell("asking the server", None)
     try:
-        with urllib.request.urlopen(request, timeout=limits.timeout_s) as answer, target.open("wb") as file:
+        with urllib.request.urlopen(request, timeout=limits.timeout_s) as answer, drafted(target) as file:
             _copy(answer, file, limits, tell)
     except urllib.error.HTTPError as error:
         with error:

@@ -21,7 +21,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
 from automotive_cosim.errors import TriggerNotReachedError
-from automotive_cosim.formats.files import read_json, write_whole
+from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.plan import choose
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Half

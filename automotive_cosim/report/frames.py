@@ -17,7 +17,7 @@ from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import NIGHT
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.formats.files import drafted
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
 from automotive_cosim.run.observer import Shot
 
@@ -145,9 +145,9 @@ def why(result: EpisodeResult) -> str:
 
 def save_animation(path: Path, pictures: Sequence[Image.Image], milliseconds: Sequence[int]) -> None:
     """Writes an animated WebP completely or not at all."""
-    with drafted(path) as draft:
+    with drafted(path) as file:
         pictures[0].save(
-            draft,
+            file,
             format="WEBP",
             save_all=True,
             append_images=list(pictures[1:]),

@@ -12,8 +12,9 @@ from PIL import Image
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import read_bytes, write_whole
+from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import FILM, PAGE, screenshot
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.report.playback import open_picture
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render

@@ -17,8 +17,9 @@ from PIL import Image
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
-from automotive_cosim.formats.files import read_bytes, write_whole
+from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import ROAD as ROAD_FILE
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmplot import speeds_plot
 from automotive_cosim.report.filmroad import RoadPainter, draw_road_sign

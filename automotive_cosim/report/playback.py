@@ -13,6 +13,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.layout import STEPS, screenshot
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.run.kept import read_steps
 
 LAST_MS = 3000
@@ -75,9 +76,17 @@ def write_film(shown: list[Frame], path: Path, speed: float) -> None:
         raise UserError(f"{missing} is missing; the record is incomplete")
     pictures = [open_picture(frame.picture).convert("RGB") for frame in shown]
     stood_ms = [round(1000 * (after.since_s - before.since_s) / speed) for before, after in pairwise(shown)]
-    pictures[0].save(
-        path, save_all=True, append_images=pictures[1:], duration=[*stood_ms, LAST_MS], loop=0, quality=80
-    )
+    durations_ms = [*stood_ms, LAST_MS]
+    with drafted(path) as file:
+        pictures[0].save(
+            file,
+            path.suffix[1:],
+            save_all=True,
+            append_images=pictures[1:],
+            duration=durations_ms,
+            loop=0,
+            quality=80,
+        )
 
 
 def open_picture(path: Path) -> Image.Image:

@@ -18,8 +18,9 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
-from automotive_cosim.formats.files import read_json, write_whole
+from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.layout import PICTURES, TRACES
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run import worker
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Runner, Worker, failed
 from automotive_cosim.run.jobs import TrialJob

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.formats.files import read_json, write_whole
+from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.tasking.catalogue import described
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE

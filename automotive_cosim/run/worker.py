@@ -10,6 +10,7 @@ from pathlib import Path
 from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
 from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.formats.layout import PICTURES
+from automotive_cosim.formats.writing import beneath
 from automotive_cosim.run.drive import run_drive
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.executor import Runner, failed_by
@@ -74,7 +75,8 @@ def run_with(
     Raises:
         OSError: trace or pictures cannot be written.
     """
-    recorder = Recorder(job, None if pictures is Pictures.NONE else folder / PICTURES / job.id)
+    kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
+    recorder = Recorder(job, kept)
     try:
         with agent as acting:
             _run(acting, job, recorder, simulations, observers)

@@ -14,6 +14,7 @@ from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED
+from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -21,7 +22,6 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.extensions import kind_of
 from automotive_cosim.run.kept import READ, is_trial, read_steps, read_trial, trace_of
 from automotive_cosim.run.road import FORMAT, read_road
-from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, trace_file

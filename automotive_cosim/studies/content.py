@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
@@ -76,7 +76,6 @@ def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:
     """
     plan, folder = study.plan, study.folder
     try:
-        write_files(folder, shown.tables, shown.plots.values())
         text = render(
             "studies/network.html",
             title=shown.title,
@@ -90,7 +89,9 @@ def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:
             plan=plan.as_json(),
             starts=study.manifest["starts"],
         )
-        write_whole(folder / "report.html", text)
+        with drafted(folder / "report.html") as file:
+            write_files(folder, shown.tables, shown.plots.values())
+            file.write(text.encode())
     except OSError as error:
         raise cannot_write(folder, error) from error
     return folder / "report.html"

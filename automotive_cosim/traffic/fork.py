@@ -28,6 +28,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.errors import NO_FORK, SetupError, TrafficError
 from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
@@ -348,8 +349,7 @@ class _Source:
         outputs = self._setup.outputs
         if outputs is None:
             return self._setup
-        (outputs / name).mkdir(parents=True, exist_ok=True)
-        return replace(self._setup, outputs=outputs / name)
+        return replace(self._setup, outputs=make_folder(outputs, name))
 
     def _next_outputs(self) -> Path | None:
         self._drives += 1

@@ -18,6 +18,7 @@ from xml.sax.saxutils import quoteattr
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, Trip
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.formats.xml import read_root, scan
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
@@ -392,7 +393,7 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
         wanted = "flow.add.xml"
         begin_s = configuration.begin_s + sumo.warm_up_s
         flows = edge_data(str(setup.outputs / EDGE_FLOWS), begin_s, setup.flow_s)
-        (configuration.folder / wanted).write_text(flows, encoding="utf-8")
+        write_whole(configuration.folder / wanted, flows)
         inputs.setdefault("additional-files", []).append(wanted)
     options |= {name: ",".join(names) for name, names in inputs.items() if names}
     options["seed"] = str(setup.seed)

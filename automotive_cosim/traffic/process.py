@@ -11,7 +11,6 @@ import faulthandler
 import fcntl
 import gc
 import os
-import shutil
 import signal
 import socket
 import stat
@@ -25,6 +24,7 @@ from typing import Any
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.writing import copy
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
@@ -240,7 +240,7 @@ def copy_outputs(folder: Path) -> None:
         except OSError:  # the listing's own
             continue
         if name.name in OUTPUTS and name.parent.parent == folder.parent:
-            shutil.copyfile(name, folder / name.name)
+            copy(name, folder / name.name, name.stat().st_size)
             own = os.open(folder / name.name, os.O_WRONLY | os.O_APPEND)
             os.dup2(own, descriptor, inheritable=False)
             os.close(own)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats.xml import read_tree
+from automotive_cosim.formats.xml import read_tree, write_xml
 
 WINDOW_S = 300.0
 """A trip departs up to this long before or after its time in the file, but not before the file's first."""
@@ -55,7 +55,7 @@ def redraw(path: Path, target: Path, seed: int) -> Path:
                 copy.set("id", f"{each.get('id')}.day{number}")
             drawn.append((departs_s, copy))
     root[:] = [*fixed, *(each for _, each in sorted(drawn, key=lambda one: one[0]))]
-    ET.ElementTree(root).write(target, encoding="utf-8", xml_declaration=True)
+    write_xml(target, root)
     return target
 
 

@@ -23,6 +23,7 @@ from automotive_cosim.formats.bounds import READERS
 from automotive_cosim.formats.csvs import read_packed_csv, write_packed_csv
 from automotive_cosim.formats.limited import LimitedProcesses
 from automotive_cosim.formats.toml import read_toml
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import extract
 from automotive_cosim.publish import archive
@@ -75,11 +76,11 @@ def book_of(rows: int, columns: int, text: str = "x", padding: int = 0) -> Calla
 
 
 def text_of(content: str) -> Callable[[Path], None]:
-    return lambda path: files.write_whole(path, content) and None
+    return lambda path: write_whole(path, content) and None
 
 
 def packed(content: str) -> Callable[[Path], None]:
-    return lambda path: files.write_whole(path, gzip.compress(content.encode())) and None
+    return lambda path: write_whole(path, gzip.compress(content.encode())) and None
 
 
 def picture(path: Path) -> None:

@@ -36,6 +36,7 @@ from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
 
 KEY = "sk-a-very-secret-key-0123456789"
+LONG_KEY = "sk-ant-api03-kT7bQ9xW2mZ4rV6yL8pN0cJ5hG3fD1sA"
 
 Behave = Callable[[BaseHTTPRequestHandler], None]
 
@@ -177,6 +178,22 @@ PAUSES = [
     ({"Retry_After": "2026-10-21T07:28:12Z", **DATED}, "", 12.0),
     ({"Retry_After": "Wed, 21 Oct 2020 07:28:12 GMT"}, "", 0.5),
     ({"Retry_After": "0"}, "{}", 0.5),
+    ({"x_ratelimit_reset_requests": "1m30s"}, "{}", 90.0),
+    (
+        {
+            "x_ratelimit_reset_tokens": "90ms",
+            "x_ratelimit_remaining_tokens": "80",
+            "x_ratelimit_reset_requests": "12s",
+            "x_ratelimit_remaining_requests": "0",
+        },
+        "{}",
+        12.0,
+    ),
+    ({"anthropic_ratelimit_tokens_reset": "2026-10-21T07:28:12Z", **DATED}, "{}", 12.0),
+    ({"RateLimit": '"minute";r=0;t=30'}, "{}", 30.0),
+    ({}, {"error": {"metadata": {"headers": {"X-RateLimit-Remaining": "0", "X-RateLimit-Reset": "5"}}}}, 5.0),
+    ({"x_ratelimit_reset": "1793518092"}, "{}", 0.5),
+    ({"x_ratelimit_reset_requests": "20", "x_ratelimit_remaining_requests": "3"}, "{}", 0.5),
     ({}, {"error": {"code": 429, "details": [RETRY_INFO]}}, 34.07),
     ({}, [{"error": {"code": 429, "message": "Quota exceeded.", "details": [RETRY_INFO]}}], 34.07),
     ({}, {"retryDelay": {"seconds": "7", "nanos": 500_000_000}}, 7.5),
@@ -242,6 +259,7 @@ REFUSALS = [
     ({"errors": [{"message": "one"}, {"message": "two"}]}, "one; two"),
     ({"error": {"message": "Provider", "metadata": {"raw": '{"error": "the cause"}'}}}, "Provider; the cause"),
     ({"Message": "signature"}, "signature"),
+    ('data: {"error": {"message": "in a stream"}}\n\n', "in a stream"),
     ({"fault": {"faultstring": "no key"}}, "no key"),
     ("just\nwords", "just words"),
     ("<html><style>p {x}</style><h1>502 Bad</h1>\n<p>gateway</p></html>", "502 Bad gateway"),
@@ -744,6 +762,18 @@ def test_no_encoding_of_a_key_gets_into_a_record(before, after):
     for text in (KEY, KEY.encode().hex().upper(), KEY[::-1]):
         assert clean(f"<{text}>") == "<***>"
     assert clean("nothing of it") == "nothing of it"
+
+
+SPELLINGS = (str, str.upper, " ".join, ". ".join, lambda key: key.replace("-", "_"), lambda key: f"{key[:20]}...")
+"""However a model says a key; as long as twenty characters of it stand there, it is hidden."""
+
+
+@pytest.mark.parametrize("spell", SPELLINGS)
+def test_no_spelling_of_a_key_gets_into_a_record(spell):
+    clean = _Endpoint("local", None, LONG_KEY).clean
+    assert clean(f"It is [{spell(LONG_KEY)}]!") in ("It is [***]!", "It is [***...]!")
+    assert clean(f"{spell(LONG_KEY)} {spell(LONG_KEY)}").count("***") == 2
+    assert clean(f"{LONG_KEY[:15]} and {LONG_KEY[15:30]}") == f"{LONG_KEY[:15]} and {LONG_KEY[15:30]}"
 
 
 def test_no_part_of_a_key_is_left_where_a_text_is_cut(server):

@@ -277,7 +277,7 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
     if os.geteuid() == 0:
         # root writes anywhere, but not into a folder that is a file
         wanted = plan("oracle")
-        (tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part").mkdir()
+        (tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.lock").mkdir()
     else:
         (tmp_path / "e" / "traces").chmod(0o500)
     with pytest.raises(UserError, match=r"cannot write to .* rerun the command to resume"):

@@ -17,7 +17,7 @@ from urllib.parse import quote
 import pytest
 
 from automotive_cosim.formats.bounds import VALUES
-from automotive_cosim.run.road_recorder import is_being_written
+from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.serve import server as server_module
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game

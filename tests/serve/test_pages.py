@@ -14,7 +14,7 @@ import pytest
 
 from automotive_cosim.contracts.given import GeoInput
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
+from automotive_cosim.formats.writing import is_being_written, mark_as_written
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.server import WebServer

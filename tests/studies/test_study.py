@@ -20,11 +20,11 @@ from automotive_cosim.cli.results import report
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, ROAD, STEPS, WATCHED
+from automotive_cosim.formats.writing import mark_as_written
 from automotive_cosim.report.files import write_files
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.road import read_record
-from automotive_cosim.run.road_recorder import mark_as_written
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies import intervals

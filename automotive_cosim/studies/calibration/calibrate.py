@@ -13,6 +13,7 @@ import numpy as np
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.osm.network import entries, exits
 from automotive_cosim.scenarios import Scenario, variant
 from automotive_cosim.studies.calibration.capacity import read_capacity
@@ -169,7 +170,7 @@ class _Calibration:
         best = rounds[kept]
         self.tell("driving it with another seed", None)
         path = self.scratch / "again.rou.xml"
-        path.write_text(best.demand, encoding="utf-8")
+        write_whole(path, best.demand)
         again = self._drive(clock, self.options.seed + 1, path)
         unfitted = _unfitted(given, covered)
         site_of = {edge: site for site, edge in mapped.edges.items()}

@@ -7,7 +7,7 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.charts import INK, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
@@ -53,8 +53,9 @@ def write_page(folder: Path) -> Path:
     )
     page = folder / "calibration.html"
     try:
-        write_files(folder, tables, plots.values())
-        write_whole(page, text)
+        with drafted(page) as file:
+            write_files(folder, tables, plots.values())
+            file.write(text.encode())
     except OSError as error:
         raise cannot_write(folder, error) from error
     return page

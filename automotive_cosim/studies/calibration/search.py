@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.scenarios import variant
 from automotive_cosim.studies.calibration.candidates import Candidate, Candidates, Ends, Passes, Passing, passes
 from automotive_cosim.studies.calibration.capacity import USABLE, Capacity, Movement
@@ -119,7 +120,7 @@ def search(world: SearchWorld, given: DrivenDemand, per_h: float, rounds: int) -
         flows, fitted = _fit(world, found, times, per_h, learned)
         demand, vehicles, routes = _demand(found, flows, world)
         path = world.scratch / "fitted.rou.xml"
-        path.write_text(demand, encoding="utf-8")
+        write_whole(path, demand)
         drive = world.simulate(path)
         yield FitRound(fitted, routes, vehicles, drive, demand, thin)
         times = EdgeTimes(world.free_s, map(_ended(clock.end_s), drive.trips))

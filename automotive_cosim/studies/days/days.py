@@ -20,6 +20,7 @@ from zlib import crc32
 
 import numpy as np
 
+from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import LoneJob, alone
 from automotive_cosim.run.row import JobRow
@@ -210,7 +211,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
     rng = np.random.default_rng((job.seed, 7))
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-days-") as folder:
         scratch = Path(folder)
-        types = vehicle_types(copied(configuration, _made(scratch / "types")), ["route-files"])
+        types = vehicle_types(copied(configuration, make_folder(scratch / "types")), ["route-files"])
         now = _first(configuration, scenario, types, observe_s, job.seed, scratch)
         advised = {trip.id for trip in now.trips if job.share is None or _draw(job.seed, trip.id) < job.share}
         is_own = bool(plan.adviser) and job.share is not None
@@ -220,7 +221,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
         means_s: list[float] = []
         for number in range(plan.days + 1):
             doing(f"day {number} of at most {plan.days}", share=number / (plan.days + 1))
-            today = _made(scratch / f"day{number}")
+            today = make_folder(scratch / f"day{number}")
             ran = run(now.written(scratch / ROUTES), now.scenario, observe_s, job.seed, today)
             times = EdgeTimes(free_s, ran.trips)
             memory = 0.0 if job.share is None else plan.memory
@@ -251,7 +252,7 @@ def _first(
     configuration: Configuration, scenario: Scenario, types: str, observe_s: float, seed: int, scratch: Path
 ) -> Assigned:
     """The trips of the demand on the routes that they set out on, departing when they first entered the network."""
-    ran = run(configuration, scenario, observe_s, seed, _made(scratch / "first"))
+    ran = run(configuration, scenario, observe_s, seed, make_folder(scratch / "first"))
     last_s = configuration.begin_s + scenario.sumo.warm_up_s + observe_s
     trips = tuple(trip for trip in ran.trips if trip.departed_s < last_s)
     return Assigned(variant.with_fixed_routes(scenario), configuration, types, trips)
@@ -280,11 +281,6 @@ def _day(
 def _draw(seed: int, name: str) -> float:
     """Below the share if the driver of a trip is advised."""
     return float(np.random.default_rng((seed, crc32(name.encode()))).random())
-
-
-def _made(folder: Path) -> Path:
-    folder.mkdir(exist_ok=True)
-    return folder
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ import numpy as np
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.scenarios import variant
 from automotive_cosim.scenarios.opening import open_scenario
 from automotive_cosim.studies.equilibrium.gap import NOTICED_S, Driven, DrivenTrip, Gap, drive, vehicle_types
@@ -56,7 +57,7 @@ class Assigned:
 
     def written(self, path: Path) -> Configuration:
         """The configuration with the trips as its demand, which are written to a file."""
-        path.write_text(self.demand, encoding="utf-8")
+        write_whole(path, self.demand)
         return replace(self.configuration, files={**self.configuration.files, "route-files": (path,)})
 
     @property

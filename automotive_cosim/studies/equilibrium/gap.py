@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import tempfile
 import xml.etree.ElementTree as ET
+from codecs import getwriter
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
@@ -22,6 +23,7 @@ import numpy.typing as npt
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.writing import drafted, write_whole
 from automotive_cosim.formats.xml import read_tree
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import read_network
@@ -167,7 +169,8 @@ class EdgeTimes:
         """Writes them as SUMO's edge data, every edge that was driven in every interval."""
         intervals = sorted({interval for _, interval in self._means_s})
         edges = sorted({edge for edge, _ in self._means_s})
-        with path.open("w", encoding="utf-8") as file:
+        with drafted(path) as written:
+            file = getwriter("utf-8")(written)
             file.write("<meandata>\n")
             for each in range(intervals[0], intervals[-1] + 1) if intervals else ():
                 file.write(f'<interval begin="{each * INTERVAL_S:g}" end="{(each + 1) * INTERVAL_S:g}" id="t">\n')
@@ -366,7 +369,7 @@ def quickest(
         f"{f' via={quoteattr(via[trip.id])}' if trip.id in via else ''}/>\n"
         for trip in trips
     )
-    (scratch / wanted).write_text(f"<routes>{types}\n{''.join(lines)}</routes>", encoding="utf-8")
+    write_whole(scratch / wanted, f"<routes>{types}\n{''.join(lines)}</routes>")
     ok, printed = sumo_programs.run(
         "duarouter",
         [

@@ -7,6 +7,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 
 from automotive_cosim.formats.layout import LIVE, WATCHED
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import Runner, tried
 from automotive_cosim.run.stage import doing, warming_up
@@ -30,7 +31,8 @@ STRIDE = 5
 
 def rounds(plan: StudyPlan, store: Store[DriveRow]) -> Iterator[Sequence[StudyJob]]:
     """The drives of all seeds; with a stopping rule, of some more until the interval is narrow enough."""
-    (store.folder / LIVE / WATCHED).touch()
+    if not (watched := store.folder / LIVE / WATCHED).exists():  # it stays what the pages have locked
+        write_whole(watched, b"")
     for count in _counts(plan):
         yield [job for job in plan.jobs() if job.seed in plan.seeds[:count]]
         if _is_narrow(plan, list(store.rows.values())):

@@ -17,7 +17,8 @@ from typing import Annotated, Any
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.csvs import csv_text
-from automotive_cosim.formats.files import drafted, read_bytes, write_whole
+from automotive_cosim.formats.files import read_bytes
+from automotive_cosim.formats.writing import drafted, write_whole
 from automotive_cosim.run.row import InColumns, columns
 from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.studies.reroute.policies import chosen, parse_policy
@@ -202,8 +203,8 @@ def _write_parquet(path: Path, rows: Sequence[object]) -> Path:
     # The declared types, not the narrowest that fit these values, so that files of several studies match.
     dtypes = {name: DTYPES.get(_type(row[name] for row in made), "object") for name in made[0]}
     frame = pd.DataFrame({name: pd.Series([row[name] for row in made], dtype=dtypes[name]) for name in dtypes})
-    with drafted(path) as draft:
-        frame.to_parquet(draft, index=False)
+    with drafted(path) as file:
+        frame.to_parquet(file, index=False)
     return path
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from statistics import fmean
 
 from automotive_cosim.formats.csvs import read_packed_csv
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.report.templates import render
 from automotive_cosim.studies.reroute.data import choosers
 from automotive_cosim.studies.reroute.results import Study, all_decisions, standard_error

@@ -8,16 +8,16 @@ lock however the watcher ends. The simulation does not change.
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from datetime import timedelta
+from io import FileIO
 from pathlib import Path
-from typing import IO
 
 from automotive_cosim.contracts import Json, LimitSource
 from automotive_cosim.formats.layout import LIVE, ROAD, STEPS, WATCHED
-from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter, is_being_written
+from automotive_cosim.formats.writing import add_line, growing, is_being_written, make_folder, remove
+from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.studies.reroute.compare import Future
 from automotive_cosim.studies.reroute.data import choosers
@@ -50,7 +50,7 @@ class LiveDrive:
         self._told: list[Json] = []
         """Steps so far, including those that nobody has watched."""
         self._road: RoadWriter | None = None
-        self._lines: IO[str] | None = None
+        self._lines: FileIO | None = None
         self._decisions = self._driven = 0
         self._tell("departure")
 
@@ -126,9 +126,8 @@ class LiveDrive:
         live, job = self._folder / LIVE, self._job
         found = [each.parent for each in live.glob(f"*/{ROAD}") if not is_being_written(each)]
         for old in sorted(found, key=lambda each: each.stat().st_mtime)[: max(0, len(found) + 1 - KEPT)]:
-            shutil.rmtree(old, ignore_errors=True)
-        folder = live / job.id
-        folder.mkdir(exist_ok=True)
+            remove(old)
+        folder = make_folder(live, job.id)
         about: Json = {
             "task": job.trip.name,
             "scenario": job.plan.scenario,
@@ -136,7 +135,7 @@ class LiveDrive:
             "model": "none",
             "seed": job.seed,
         }
-        self._lines = (folder / STEPS).open("w", encoding="utf-8", newline="\n")
+        self._lines = growing(folder / STEPS, anew=True)
         for line in self._told:
             self._write(line)
         self._road = RoadWriter(folder / ROAD, self._traffic, about, self._begun_s)
@@ -169,8 +168,7 @@ class LiveDrive:
 
     def _write(self, line: Json) -> None:
         if self._lines is not None:
-            self._lines.write(json.dumps(line, ensure_ascii=False) + "\n")
-            self._lines.flush()
+            add_line(self._lines, json.dumps(line, ensure_ascii=False))
 
 
 def _way(number: int | None) -> str:

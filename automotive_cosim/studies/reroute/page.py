@@ -8,7 +8,7 @@ from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.store import cannot_write
@@ -41,25 +41,25 @@ def write_study(folder: Path) -> Path:
     ]
     plots = charts(study) if study.choices else {}
     try:
-        write_files(folder, made, plots.values())
-        write_data(study)
-        write_decisions(study)
-        page = folder / "report.html"
-        text = render(
-            "studies/reroute/study.html",
-            study=study,
-            answer=answer(study),
-            count=len(study.decisions),
-            tables=made,
-            plots=plots,
-            warnings=warnings(study),
-            plan=study.plan.as_json(),
-            seeds=len({row.seed for row in study.rows}),
-            demand=study.plan.demand(),
-            cost_s=cost_s(study),
-            starts=study.manifest["starts"],
-        )
-        write_whole(page, text)
+        with drafted(page := folder / "report.html") as file:
+            write_files(folder, made, plots.values())
+            write_data(study)
+            write_decisions(study)
+            text = render(
+                "studies/reroute/study.html",
+                study=study,
+                answer=answer(study),
+                count=len(study.decisions),
+                tables=made,
+                plots=plots,
+                warnings=warnings(study),
+                plan=study.plan.as_json(),
+                seeds=len({row.seed for row in study.rows}),
+                demand=study.plan.demand(),
+                cost_s=cost_s(study),
+                starts=study.manifest["starts"],
+            )
+            file.write(text.encode())
     except OSError as error:
         raise cannot_write(folder, error) from error
     return page

@@ -8,7 +8,7 @@ from pathlib import Path
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.csvs import read_packed_csv
-from automotive_cosim.run.road_recorder import is_being_written
+from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.serve.records import NotHereError

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from statistics import fmean
 
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.reroute.demand import read_demand
 from automotive_cosim.studies.reroute.effects import rerouted

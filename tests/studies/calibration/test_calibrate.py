@@ -27,7 +27,7 @@ from automotive_cosim.studies.calibration.settings import CalibrationOptions
 from automotive_cosim.studies.equilibrium.gap import DrivenTrip, EdgeTimes
 from automotive_cosim.traffic.options import Configuration, Setup, copied, read_configuration, run_options
 
-COUNTS = Path(__file__).parents[2] / "docs/examples/grid_counts.csv"
+COUNTS = Path(__file__).parents[3] / "docs/examples/grid_counts.csv"
 
 PROFILE = (
     *(0.12, 0.07, 0.05, 0.05, 0.09, 0.25, 0.6, 0.95, 1.0, 0.85, 0.75, 0.76),
