@@ -5,6 +5,7 @@ from __future__ import annotations
 import bz2
 import codecs
 import errno
+import gc
 import gzip
 import io
 import json
@@ -241,6 +242,19 @@ def drafted(path: Path) -> Iterator[Path]:
         if error.errno is None:
             raise
         raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+@contextmanager
+def without_collection() -> Iterator[None]:
+    """Collects no garbage meanwhile: what is read stays, and looking through it again and again takes a fifth of
+    the time of a large file."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 def write_whole(path: Path, content: str | bytes) -> None:

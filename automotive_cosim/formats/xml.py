@@ -6,15 +6,14 @@ differently. A file in an encoding that not every parser knows has to be rewritt
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import IO
 from xml.parsers import expat
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import is_utf8, opened
+from automotive_cosim.formats.files import is_utf8, opened, without_collection
 
 SHARED_ENCODINGS = frozenset(("utf-8", "us-ascii", "ascii", "iso-8859-1", "utf-16"))
 """Encodings that every parser knows."""
@@ -77,7 +76,7 @@ def scan(
     try:
         with ExitStack() as open_files:
             file = open_files.enter_context(opened(path))
-            open_files.enter_context(_without_collection())
+            open_files.enter_context(without_collection())
             parser.ParseFile(file if copy is None else _Tee(file, open_files.enter_context(copy.open("wb"))))
     except FileNotFoundError as broken:
         raise error(f"{path} is missing") from broken
@@ -87,19 +86,6 @@ def scan(
             hint = f"; it is not UTF-8: save it so, or let it begin with {LATIN_1}"
         raise error(f"{path} is not {what}: {broken}{hint}") from broken
     return encoding
-
-
-@contextmanager
-def _without_collection() -> Iterator[None]:
-    """Collects no garbage meanwhile: what is read stays, and looking through it again and again takes a fifth of
-    the time of a large network."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 class _Tee:
