@@ -15,7 +15,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.run
-	$(BIN)/automotive-cosim run --pair
+	$(BIN)/automotive-cosim run --pair --seed 3
 
 test: $(VENV)/.test
 	$(BIN)/python -m pytest -n auto --dist worksteal --durations=10

@@ -28,7 +28,6 @@ _HOMES = {
     "automotive_cosim.run.episode": ("EpisodeResult", "EpisodeSetup", "run_episode"),
     "automotive_cosim.run.episode_row": ("EpisodeRow",),
     "automotive_cosim.run.plan": ("Plan", "make_plan"),
-    "automotive_cosim.studies.results": ("load_study",),
 }
 """Where the public names are defined; ``__init__.pyi`` tells type checkers the same."""
 

@@ -13,7 +13,6 @@ from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import Plan, make_plan
-from automotive_cosim.studies.results import load_study
 
 __all__ = [
     "Action",
@@ -36,7 +35,6 @@ __all__ = [
     "Reason",
     "UserError",
     "load_results",
-    "load_study",
     "make_agent",
     "make_plan",
     "run_episode",

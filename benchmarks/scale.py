@@ -31,9 +31,10 @@ from typing import Any
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady
 from automotive_cosim.run.store import read_rows
-from automotive_cosim.studies.batch import drives, run_study
-from automotive_cosim.studies.plan import StudyPlan
-from automotive_cosim.studies.rows import DriveRow
+from automotive_cosim.studies.calls.ledger import run_on
+from automotive_cosim.studies.reroute.batch import REROUTE, drives
+from automotive_cosim.studies.reroute.plan import StudyPlan
+from automotive_cosim.studies.reroute.rows import DriveRow
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
@@ -128,7 +129,7 @@ class Clock:
 
         def noted(simulation: Forked, plan: EgoPlan) -> RemoteTraffic:
             if not self.warm_s:
-                self.vehicles = simulation.run_on(1.0).running
+                self.vehicles = simulation.call(run_on, 1.0).running
                 self.warm_s = spent_s()
             return depart(simulation, plan)
 
@@ -234,7 +235,7 @@ def measured(
     clock_s: list[float] = []
     begun_s = time.perf_counter()
     with executor:
-        run_study(plan, folder, executor=executor, tell=lambda progress: clock_s.append(time.process_time()))
+        REROUTE.run(plan, folder, executor=executor, tell=lambda progress: clock_s.append(time.process_time()))
     took_s = time.perf_counter() - begun_s
     handed_s += [after - before for before, after in pairwise(clock_s[1:])]
     rows = read_rows(folder, DriveRow)

@@ -22,6 +22,8 @@ from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.wakes import WAKES
 from automotive_cosim.episode.conditions import TABLE
+from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
+from automotive_cosim.formats.bounds import READERS
 from automotive_cosim.formats.docs import field_docs, member_docs
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.policy import HOUSE
@@ -124,11 +126,11 @@ def _leaderboard() -> str:
     if left_out:
         raise RuntimeError(f"docs/leaderboard/bundles: {'; '.join(left_out)}")
     parts: list[str] = []
-    for table, conditions, _ in made:
-        shown = [place for place, head in enumerate(table.columns) if head in SHOWN]
-        rows = [[row[place] for place in shown] for row in table.rows]
+    for places, conditions, _ in made:
+        shown = [place for place, head in enumerate(places.columns) if head in SHOWN]
+        rows = [[row[place] for place in shown] for row in places.rows]
         parts.append(f"{conditions.tasks}, {conditions.scenarios}, seed {conditions.seeds}, {conditions.limits}:")
-        parts.append(_table([table.columns[place] for place in shown], rows))
+        parts.append(_table([places.columns[place] for place in shown], rows))
     return "\n\n".join(parts)
 
 
@@ -149,6 +151,18 @@ def _fields(name: str) -> str:
     return "\n\n".join(parts)
 
 
+def _openscenario() -> str:
+    """Each element of OpenSCENARIO XML with what the import makes of its attributes and parts."""
+    rows: list[tuple[str, ...]] = []
+    for tag, row in table().items():
+        by_word: dict[str, list[str]] = {CARRIED: [], DIFFERENT: [], REFUSED: []}
+        for name, word, difference in row.told():
+            told = f" ({difference})" if difference else ""
+            by_word[word].append(f"`{name}`{told}")
+        rows.append((f"`{tag}`", *("; ".join(each) for each in by_word.values())))
+    return _table(("element", CARRIED, DIFFERENT, REFUSED), sorted(rows))
+
+
 MADE: Mapping[str, Callable[[], str]] = {
     "conditions": _conditions,
     "families": _families,
@@ -160,11 +174,15 @@ MADE: Mapping[str, Callable[[], str]] = {
         ("`format`", "models", "coordinates", "declines with"),
         [(f"`{name}`", each.models, each.grid.told, each.declines) for name, each in FORMATS.items()],
     ),
+    "openscenario": _openscenario,
     "plan": lambda: _fields("plan"),
     "policy": lambda: _table(
         ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE]
     ),
     "scenario": lambda: _fields("scenario"),
+    "readers": lambda: _table(
+        ("file", "read by", "bound"), [(each.what, f"`{each.where}`", each.bound) for each in READERS]
+    ),
     "settings": lambda: _table(
         ("factor of drives", "value"),
         [(f"`{name}`", about) for name, about in field_docs(DriveSettings).items()],

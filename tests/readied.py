@@ -11,19 +11,22 @@ import socket
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import automotive_cosim.drives.families
 import automotive_cosim.proof.prover
-import automotive_cosim.publish.verify
-import automotive_cosim.studies.batch  # noqa: F401, like the others for the workers
+import automotive_cosim.publish.verify  # noqa: F401, like the others for the workers
 from automotive_cosim.agents import process
 from automotive_cosim.agents.wire import Wire
 from automotive_cosim.run import fork_server, processes, worker
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasks import CATALOGUE
 from tests import farm, preloaded
+
+with suppress(ModuleNotFoundError):  # the studies may not be installed
+    import_module("automotive_cosim.studies.reroute.batch")
 
 _spare: list[Any] = []
 len(CATALOGUE)  # reads it, for all workers

@@ -26,7 +26,7 @@ from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, S
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import action_of, offered
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.models.base import ModelReply, ToolCall
+from automotive_cosim.models.base import ModelReply, ToolCall, believed
 
 if TYPE_CHECKING:
     from automotive_cosim.agents.a2a.line import AgentLine
@@ -89,7 +89,7 @@ class A2AAgent:
         self._left: deque[ToolCall] = deque()
         self._waiting: ToolCall | None = None
         self._tokens = 0
-        self._seconds = 0.0
+        self._seconds = self._unreported_s = 0.0
         self._is_reported = True
         self.stages.clear()
 
@@ -174,8 +174,8 @@ class A2AAgent:
         self._is_reported = answer.metrics is not None
         metrics = answer.metrics or Metrics()
         self._seconds += took_s
-        self._tokens += metrics.tokens_in + metrics.tokens_out
-        reply = ModelReply(
+        self._unreported_s += took_s
+        told = ModelReply(
             answer.say,
             metrics.tokens_in,
             metrics.tokens_out,
@@ -184,6 +184,10 @@ class A2AAgent:
             reasoning=answer.reasoning,
             tokens_reasoning=metrics.tokens_reasoning,
         )
+        reply = believed(told, self._unreported_s)
+        if self._is_reported:
+            self._unreported_s = 0.0
+        self._tokens += reply.tokens_in + reply.tokens_out
         called = "\n".join(f"{call.name} {call.arguments}" for call in answer.calls)
         self._note(StageName.INTERPRET, seen, "\n".join(filter(None, (answer.say, called))), reply)
         return answer

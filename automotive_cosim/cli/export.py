@@ -16,7 +16,7 @@ from automotive_cosim.exchange.settings import ExportFormats
 if TYPE_CHECKING:
     from automotive_cosim.exchange.recording import Recording
 
-ROAD, SCENARIO, TRACE, FCD, TABLE = "road.xodr", "scenario.xosc", "trace_gt.osi", "fcd.xml", "trajectories"
+ROAD, SCENARIO, FCD, TABLE = "road.xodr", "scenario.xosc", "fcd.xml", "trajectories"
 
 
 @reads_results
@@ -32,24 +32,28 @@ def export(
     out: Annotated[Path | None, typer.Option(help="Folder for the files.", show_default="TRIAL/exchange")] = None,
     **settings: Any,
 ) -> None:
-    """Write a kept trial in the formats of others: OpenSCENARIO XML, OpenDRIVE, OSI, SUMO's FCD, CSV, Parquet."""
+    """Write a kept trial in the formats of others: OpenSCENARIO XML, OpenDRIVE, OSI, SSAM, FCD, CSV, Parquet."""
     from automotive_cosim.exchange.needs import check_formats
     from automotive_cosim.exchange.openscenario import write_openscenario
-    from automotive_cosim.exchange.osi import write_osi
+    from automotive_cosim.exchange.osi import trace_name, write_osi
     from automotive_cosim.exchange.recording import read_recording
+    from automotive_cosim.exchange.ssam import write_trajectories
     from automotive_cosim.exchange.trajectories import write_csv, write_fcd, write_parquet
+    from automotive_cosim.formats.writing import make_folder
     from automotive_cosim.run.store import cannot_write
 
     formats = filled(ExportFormats, settings)
     if not formats:
-        raise UserError("nothing to write; give --openscenario 1.3, --opendrive, --osi, --fcd, --csv or --parquet")
+        raise UserError(
+            "nothing to write; give --openscenario 1.3, --opendrive, --osi, --ssam, --fcd, --csv or --parquet"
+        )
     check_formats(formats)
     recording = read_recording(trial)
-    folder = out or trial / "exchange"
+    folder, written = out or trial / "exchange", []
     road = folder / ROAD if formats.opendrive else None
-    written = []
+    trace = trace_name(recording) if formats.osi else ""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder = make_folder(out) if out else make_folder(trial, "exchange")
         for name, wanted, write in (
             (ROAD, formats.opendrive, _write_road),
             (
@@ -57,7 +61,9 @@ def export(
                 formats.openscenario,
                 partial(write_openscenario, version=formats.openscenario or "", road=road),
             ),
-            (TRACE, formats.osi, partial(write_osi, road=road)),
+            (f"{trace}.osi", formats.osi, partial(write_osi, road=road)),
+            (f"{trace}.mcap", formats.osi, partial(write_osi, road=road)),
+            (f"{TABLE}.trj", formats.ssam, write_trajectories),
             (FCD, formats.fcd, write_fcd),
             (f"{TABLE}.csv", formats.csv, write_csv),
             (f"{TABLE}.parquet", formats.parquet, write_parquet),

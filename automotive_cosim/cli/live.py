@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from automotive_cosim.cli.console import Console
+from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.contracts.plain import clock, counted, megabytes_in_words
@@ -22,10 +23,10 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.text import amount_of_speed
+from automotive_cosim.report.frames import why
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.words import (
-    action_in_words,
     is_over,
     limit_in_words,
     limit_kmh,
@@ -88,14 +89,16 @@ class Notes(EpisodeObserver):
 class Live(EpisodeObserver):
     """Shows an episode as it runs and, at the end, the verdict and the timeline."""
 
-    def __init__(self, console: Console | None = None, *, by_hand: bool = False) -> None:
+    def __init__(self, console: Console | None = None, *, by_hand: bool = False, brief: bool = False) -> None:
         """Starts with nothing shown.
 
         Args:
             console: where to.
             by_hand: a person acts, whose typing no line may interrupt.
+            brief: only what was said and done, and the verdict in one line.
         """
         self._by_hand = by_hand
+        self._brief = brief
         self._console = console or Console(highlight=False)
         self._display: Display | None = None
         self._episode: Episode | None = None
@@ -131,7 +134,7 @@ class Live(EpisodeObserver):
             row = Table.grid(padding=(0, 2))
             row.add_row("warming up traffic", bar, f"{done_s:.0f} of {total_s:.0f} s")
             self._show(Panel(row, title=Text(scenario), title_align="left"))
-        elif done_s in (0, total_s):
+        elif done_s in ((0,) if self._brief else (0, total_s)):
             self._console.print(f"{scenario}: {done_s:.0f} of {total_s:.0f} s of traffic warmed up")
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
@@ -140,7 +143,7 @@ class Live(EpisodeObserver):
             self._title = "drive up to the hand-over"
         if self._console.is_terminal:
             self._show(self._panel(moment))
-        elif self._said_s is None or moment.time_s - self._said_s >= PLAIN_EVERY_S:
+        elif not self._brief and (self._said_s is None or moment.time_s - self._said_s >= PLAIN_EVERY_S):
             self._said_s = moment.time_s
             self._held.append(f"{self._clock(moment)}  {_drive(moment)}")
             if self._begins is None:
@@ -191,7 +194,11 @@ class Live(EpisodeObserver):
         if lost := _no_action(self._episode):
             self._console.print(Text(lost, style="yellow"), soft_wrap=True)
         if result.steps or result.verdict:
-            self._console.print(_verdict(result), soft_wrap=True)
+            lines = _verdict(result)
+            told = (
+                [Text.assemble(lines[0], (f": {why(result)}", "dim"))] if self._brief and result.verdict else lines
+            )
+            self._console.print(Text("\n").join(told), soft_wrap=True)
 
     def _wait(self) -> None:
         if not self._by_hand:
@@ -259,7 +266,7 @@ def _traffic(moment: Moment) -> str:
     )
 
 
-def _verdict(result: EpisodeResult) -> Text:
+def _verdict(result: EpisodeResult) -> list[Text]:
     if result.success is None:
         lines = [Text(f"no verdict: {result.end}", style="bold yellow")]
     else:
@@ -274,4 +281,4 @@ def _verdict(result: EpisodeResult) -> Text:
         )
     lines.append(Text())
     lines += [Text.assemble((f"{entry.at_s:+8.1f} s", "dim"), f"  {entry.text}") for entry in result.timeline]
-    return Text("\n").join(lines)
+    return lines

@@ -34,12 +34,13 @@ from automotive_cosim.cli import (
     search,
     serve,
     show,
-    study,
     tasks,
 )
+from automotive_cosim.cli.options import CONTENTS, READ, RUN, TOOLS
 from automotive_cosim.cli.terminal import discard_output, json_alone, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.plain import plain
+from automotive_cosim.run.extensions import extensions
 
 INTERRUPTED = 130
 """Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
@@ -55,12 +56,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-RUN, READ, CONTENTS, TOOLS = "Run agents", "Read, check and publish results", "Tasks and places", "Tools"
 app.command(rich_help_panel=RUN)(run.run)
 app.command(rich_help_panel=RUN)(drive.drive)
 app.command("eval", rich_help_panel=RUN)(evaluate.evaluate)
 app.command(rich_help_panel=RUN)(search.search)
-app.add_typer(study.app, name="study", rich_help_panel=RUN)
 app.command(rich_help_panel=READ)(serve.serve)
 app.command(rich_help_panel=READ)(results.report)
 app.command(rich_help_panel=READ)(compare.compare)
@@ -76,6 +75,8 @@ app.command(rich_help_panel=TOOLS)(doctor.doctor)
 app.command(rich_help_panel=TOOLS)(bench.bench)
 app.command(rich_help_panel=TOOLS)(mcp.mcp)
 app.command(rich_help_panel=TOOLS)(a2a.a2a)
+for extension in extensions():
+    extension.add_commands(app, {"scenarios": scenarios.app})
 
 
 def _version(wanted: bool) -> None:

@@ -28,7 +28,7 @@ def mcp(**settings: Any) -> None:
 
     told = filled(McpSettings, settings)
     with closing(EpisodeService(limits=ServiceLimits(told.episodes, told.idle_s))) as service:
-        server = make_server(service, told.interface)
+        server = make_server(service, told.interface, told.scenarios)
         if told.http is None:
             # Not on this thread: the server cannot be interrupted while it waits for standard input.
             talk = threading.Thread(target=server.run, args=("stdio",), daemon=True)

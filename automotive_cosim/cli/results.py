@@ -34,12 +34,12 @@ def report(
         return
     from automotive_cosim.report.evaluation import write_report
     from automotive_cosim.report.results import read_results
+    from automotive_cosim.run.extensions import kind_of
     from automotive_cosim.run.store import read_manifest
-    from automotive_cosim.studies.pages import write_page
 
-    plan = read_manifest(folder)["plan"]
-    if "study" in plan:
-        page = write_page(folder)
+    kind = kind_of(read_manifest(folder)["plan"])
+    if kind is not None:
+        page = kind.write_page(folder)
     else:
         page = write_report(folder)
         typer.echo(str(read_results(folder).coverage))

@@ -56,7 +56,6 @@ HEADLINE = (
 
 
 PAIR_TITLES = ("Knows where it is", "The same agent, place withheld")
-PAIR_FOLDERS = ("with_place", "without_place")
 
 
 @takes_conditions()
@@ -122,8 +121,11 @@ def run(
         if how.pair:
             blind = replace(under, geo=GeoInput.NONE)
             both = ((setup, player), (replace(setup, conditions=blind), player_under(blind)))
-            results, page = _recorded_pair(folder, both, simulations, wall_s=limited.wall_s, as_json=as_json)
+            results, page, conclusion = _recorded_pair(
+                folder, both, simulations, wall_s=limited.wall_s, as_json=as_json
+            )
         else:
+            conclusion = ""
             results = [
                 _recorded(folder, setup, player, arguments, simulations, wall_s=limited.wall_s, as_json=as_json)
             ]
@@ -136,6 +138,8 @@ def run(
         print_json({"pair": told, "out": str(folder)} if how.pair else told[0])
     elif has_begun:
         typer.echo(f"Recorded in {folder}; open {page}")
+        if conclusion:
+            typer.echo(f"\n{conclusion}")
     for result in results:
         if result.error is not None:
             raise InfrastructureError(result.error)
@@ -174,7 +178,8 @@ def _recorded(
     recorder = Recorder(EpisodeJob(setup), folder, {**arguments, "out": str(folder)}, whole=True)
     # A panel that redraws itself would interfere with a person who types.
     by_hand = player.name == "human"
-    view = Live(Console(force_terminal=False, highlight=False) if by_hand else None, by_hand=by_hand)
+    console = Console(force_terminal=False, highlight=False) if by_hand else None
+    view = Live(console, by_hand=by_hand, brief=bool(more))
     observers = [recorder, RoadRecorder(folder, setup.about), Film(folder), Notes() if as_json else view, *more]
     try:
         result = run_episode(setup, player, observers, simulations=simulations, wall_s=wall_s)
@@ -195,13 +200,15 @@ def _recorded_pair(
     *,
     wall_s: float,
     as_json: bool,
-) -> tuple[list[EpisodeResult], Path]:
-    """Runs two episodes from the same instant and records both, with the film and the page that show them."""
+) -> tuple[list[EpisodeResult], Path, str]:
+    """Runs two episodes from the same instant and records both, with the film and the page that show them, and what
+    they show in a sentence."""
+    from automotive_cosim.formats.layout import PAIR
     from automotive_cosim.report.frames import Frames
     from automotive_cosim.report.pair import PairSide, screen_size, sentence, write_pair
 
     sides: list[PairSide] = []
-    for title, name, (setup, player) in zip(PAIR_TITLES, PAIR_FOLDERS, both, strict=True):
+    for title, name, (setup, player) in zip(PAIR_TITLES, PAIR, both, strict=True):
         if not as_json:
             typer.echo(f"{title}:")
         frames = Frames(screen_size())
@@ -209,12 +216,9 @@ def _recorded_pair(
             folder / name, setup, player, {"pair": name}, simulations, [frames], wall_s=wall_s, as_json=as_json
         )
         if result.trace_sha256 is None:
-            return [result], folder
+            return [result], folder, ""
         sides.append(PairSide(title, folder / name, frames, result))
-    page = write_pair(folder, sides)
-    if not as_json:
-        typer.echo(sentence(sides))
-    return [side.result for side in sides], page
+    return [side.result for side in sides], write_pair(folder, sides), sentence(sides)
 
 
 def _headline(result: EpisodeResult) -> Json:

@@ -1,4 +1,4 @@
-"""``automotive-cosim scenarios``: lists, checks, draws, imports and calibrates scenarios."""
+"""``automotive-cosim scenarios``: lists, checks, draws and imports scenarios."""
 
 from __future__ import annotations
 
@@ -13,14 +13,12 @@ import typer
 
 from automotive_cosim import scenarios
 from automotive_cosim.cli.batches import tell_notes
-from automotive_cosim.cli.calibrate import calibrate_scenario
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, print_json, tell_opening
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
-from automotive_cosim.scenarios.settings import EquilibriumSettings, OptimumSettings
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -29,12 +27,10 @@ if TYPE_CHECKING:
     from automotive_cosim.osm.report import ImportReport
     from automotive_cosim.scenarios import Scenario
     from automotive_cosim.scenarios.check import ScenarioProof
-    from automotive_cosim.scenarios.optimum import SystemOptimum
     from automotive_cosim.scenarios.streets import StreetEdges
     from automotive_cosim.traffic.stability import Stability
 
-app = typer.Typer(help="List, check, draw, import and calibrate scenarios.", no_args_is_help=True)
-app.command("calibrate")(calibrate_scenario)
+app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_help=True)
 
 
 @app.command("list")
@@ -293,102 +289,6 @@ def import_scenario(
     with _progress() as tell:
         report = import_map(file, folder, options, tell)
     _print_report(report, name, folder, time.monotonic() - started_s)
-
-
-@app.command("equilibrate")
-@takes(OptimumSettings)
-@takes(EquilibriumSettings)
-def equilibrate_scenario(
-    folder: Annotated[Path, typer.Argument(help="Folder of a scenario, or any .sumocfg.", show_default=False)],
-    as_json: AsJson = False,
-    **settings: Any,
-) -> None:
-    """Give a scenario's drivers their user-equilibrium routes, found by repeated simulation.
-
-    Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
-    """
-    from automotive_cosim.scenarios.equilibrium import AssignmentStep, equilibrate
-    from automotive_cosim.scenarios.optimum import OptimumStep, compare
-    from automotive_cosim.scenarios.variant import check_target
-
-    told = filled(OptimumSettings, settings)
-    target = told.out or folder.with_name(f"{folder.resolve().name.removesuffix('.sumocfg')}_equilibrium")
-
-    def tell(step: AssignmentStep) -> None:
-        typer.echo(f"step {step.number}: {step.gap}; {step.changed} change")
-
-    def tell_total(step: OptimumStep) -> None:
-        total = step.total
-        typer.echo(
-            f"towards the optimum, step {step.number}: {total.mean_s:.1f} s per trip, {total.unfinished} had not "
-            f"arrived, {total.teleports} teleports; {step.changed} change"
-        )
-
-    options = filled(EquilibriumSettings, settings)
-    optimum = target.with_name(f"{target.name}_optimum")
-    driven = [*(told.seeds or range(options.seed + 1, options.seed + 11))]
-    if options.seed in driven or len(set(driven)) < 2:
-        raise UserError(
-            f"--seeds is {','.join(map(str, driven))}; give two or more seeds, but not {options.seed}, with which "
-            "the search runs"
-        )
-    if told.system_optimum:
-        check_target(optimum)  # before the equilibrium, which takes minutes
-    found = equilibrate(folder, target, options, tell)
-    compared = None
-    if told.system_optimum:
-        compared = compare(target, optimum, options, driven, tell_total)
-    best = min(found, key=lambda step: step.gap.relative)
-    if as_json:
-        print_json(
-            {
-                "out": str(target),
-                "kept": best.number,
-                "relative_gaps": [step.gap.relative for step in found],
-            }
-            | ({} if compared is None else compared.as_json() | {"optimum": str(optimum)})
-        )
-        return
-    reached = "" if best.gap.relative <= options.gap else f"; {options.gap:.1%} was not reached"
-    typer.echo(f"{target}: the demand of step {best.number}, {best.gap}{reached}")
-    if compared is not None:
-        typer.echo(f"{optimum}: the demand of step {compared.kept}\n")
-        _print_states(compared)
-
-
-def _print_states(found: SystemOptimum) -> None:
-    """Both states side by side, means over seeds."""
-    from statistics import fmean
-
-    from rich.table import Table
-
-    from automotive_cosim.cli.console import Console
-
-    table = Table(
-        *("", "trips", "total, h", "per trip, s", "not arrived", "teleports"),
-        box=None,
-        header_style="bold",
-        pad_edge=False,
-    )
-    for name, totals in (("user equilibrium", found.equilibrium), ("system optimum", found.optimum)):
-        table.add_row(
-            name,
-            str(totals[0].trips),
-            f"{fmean(each.total_s for each in totals) / 3600:.2f}",
-            f"{fmean(each.mean_s for each in totals):.1f}",
-            f"{fmean(each.unfinished for each in totals):.1f}",
-            f"{fmean(each.teleports for each in totals):.1f}",
-        )
-    Console().print(table)
-    low, high = found.interval
-    typer.echo(
-        f"\nprice of anarchy: {found.price_of_anarchy:.3f} ({low:.3f} to {high:.3f}, 95 % over {len(found.ratios)} "
-        "seeds); a lower bound, as the search may not have found the optimum"
-    )
-    if found.kept == 0:
-        typer.echo("the search found no routes with a lower total time than the equilibrium's")
-    elif low <= 1 <= high:
-        typer.echo("the interval includes 1: these seeds show no difference")
 
 
 @app.command("download")

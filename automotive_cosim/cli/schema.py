@@ -19,6 +19,7 @@ def schema(
     """Print the JSON Schema of a file format, so that an editor can check and complete such files."""
     from automotive_cosim import schemas
     from automotive_cosim.errors import UserError
+    from automotive_cosim.formats.writing import write_whole
 
     if name is None:
         if out is not None:
@@ -30,5 +31,5 @@ def schema(
     if out is None:
         typer.echo(text, nl=False)
     else:
-        out.write_text(text, encoding="utf-8")
+        write_whole(out, text)
         typer.echo(f"{out} written")

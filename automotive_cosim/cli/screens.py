@@ -10,6 +10,8 @@ import typer
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.report.settings import ScreensSettings
 
+FORMATS = {".webp": "WEBP", ".png": "PNG", ".jpg": "JPEG"}
+
 
 @takes(ScreensSettings)
 def screens(**settings: Any) -> None:
@@ -19,11 +21,12 @@ def screens(**settings: Any) -> None:
     from automotive_cosim.episode.situation import SituationFinder
     from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
     from automotive_cosim.errors import UserError
+    from automotive_cosim.formats.writing import drafted, make_folder
     from automotive_cosim.report.contactsheet import contact_sheet
     from automotive_cosim.traffic.fork import Simulations
 
     told = filled(ScreensSettings, settings)
-    if told.out.suffix not in (".webp", ".png", ".jpg"):
+    if told.out.suffix not in FORMATS:
         raise UserError(
             f"{told.out} is not a picture format that can be written; give --out a name ending in .webp, .png or "
             ".jpg"
@@ -35,6 +38,7 @@ def screens(**settings: Any) -> None:
         with closing(finder.find(SeedSource(0).next()).world) as world:
             cockpit = world.cockpit
     cockpit.inject(HMI.LANGUAGE.path, told.language)
-    told.out.parent.mkdir(parents=True, exist_ok=True)
-    contact_sheet(cockpit).save(told.out, quality=80)
+    make_folder(told.out.parent)
+    with drafted(told.out) as file:
+        contact_sheet(cockpit).save(file, FORMATS[told.out.suffix], quality=80)
     typer.echo(f"{told.out} written")

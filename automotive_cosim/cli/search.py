@@ -58,7 +58,7 @@ def search(
     After Ctrl-C the page has what was found by then.
     """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.formats.files import write_whole
+    from automotive_cosim.formats.writing import write_whole
     from automotive_cosim.report.stats import distributions
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.settings import Budget

@@ -29,11 +29,12 @@ def serve(
     Played episodes are recorded in the first folder; a study in a subfolder named after its file. Ctrl-C stops the
     server: runs do not depend on it, and a study resumes where it was.
     """
+    from automotive_cosim.formats.writing import make_folder
     from automotive_cosim.serve.server import WebServer
 
     told, default = filled(ServeSettings, settings), Path("runs")
     if (told.play or told.study) and folders is None:
-        default.mkdir(exist_ok=True)
+        make_folder(default)
     shown = folders if folders is not None else [default] if default.is_dir() else []
     game = dealt = None
     if told.play or told.study:

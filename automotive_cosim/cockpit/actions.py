@@ -1,7 +1,7 @@
 """Actions: read from JSON, checked field by field, performed on the cockpit.
 
-The vocabulary is AndroidWorld's JSON action plus the car's safety calls. ``FIELDS`` defines what each type takes; a
-model's prompt is generated from it (``grammar``), so the two cannot diverge.
+The vocabulary is AndroidWorld's JSON action plus the car's safety calls. ``FIELDS`` has a row for each type: what
+it takes, what it does, and how it is told. Prompts are made of it (``grammar``), so the two cannot diverge.
 """
 
 from __future__ import annotations
@@ -64,9 +64,15 @@ RANGES: Mapping[str, tuple[int, int]] = {
 """Bounds of some fields."""
 
 
+def _nothing(car: Cockpit, do: Action) -> Feedback:
+    """Nothing in the cockpit moves."""
+    return Feedback(FeedbackCode.OK, "")
+
+
 @dataclass(frozen=True, slots=True)
 class Takes:
-    """The fields of one action type. With ``target``, it requires an ``index``, or ``x`` and ``y``, never both."""
+    """One action type: its fields, effect and words. With ``target``, it requires an ``index``, or ``x`` and ``y``,
+    never both."""
 
     about: str
     about_by_point: str = ""
@@ -76,39 +82,96 @@ class Takes:
     target: bool = False
     required: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
+    effect: Callable[..., Feedback] = _nothing
+    """Performs it on the cockpit, which decides what is possible and says why not. It is also given the pixel of a
+    target, or the key of the list that an optional index names, empty without one."""
+    words: str = ""
+    """How it is told, as a sentence without a subject (``action_in_words``); without one, its name says it."""
+
+
+def _typed(car: Cockpit, do: Action, x: int, y: int) -> Feedback:
+    focused = car.tap(x, y)
+    if focused.code not in (FeedbackCode.OK, FeedbackCode.NO_EFFECT):
+        return focused
+    return car.type_text(do.text or "", clear=bool(do.clear_text))
+
+
+def _alerted(car: Cockpit, do: Action) -> Feedback:
+    assert do.kind is not None
+    return car.alert(Alert(do.kind, do.severity or Severity.WARNING, do.text or "", do.speed_kmh))
+
+
+def _slowed(car: Cockpit, do: Action) -> Feedback:
+    assert do.speed_kmh is not None
+    return car.ask_road(SlowDown(do.speed_kmh))
+
+
+def _estimated(car: Cockpit, do: Action) -> Feedback:
+    if position(do.text or "") is None:
+        return Feedback(FeedbackCode.REFUSED, say('no position; give "LON,LAT" in degrees, e.g. "2.3522,48.8566"'))
+    return _nothing(car, do)
 
 
 FIELDS: Mapping[ActionType, Takes] = {
-    ActionType.CLICK: Takes("tap an element or a point", "tap a point", target=True),
-    ActionType.DOUBLE_TAP: Takes("tap it twice", target=True),
-    ActionType.LONG_PRESS: Takes("hold plus or minus for five steps at once; nothing else reacts", target=True),
+    ActionType.CLICK: Takes(
+        "tap an element or a point",
+        "tap a point",
+        target=True,
+        effect=lambda car, do, x, y: car.tap(x, y),
+        words="taps {on}",
+    ),
+    ActionType.DOUBLE_TAP: Takes(
+        "tap it twice", target=True, effect=lambda car, do, x, y: car.double_tap(x, y), words="double-taps {on}"
+    ),
+    ActionType.LONG_PRESS: Takes(
+        "hold plus or minus for five steps at once; nothing else reacts",
+        target=True,
+        effect=lambda car, do, x, y: car.long_press(x, y),
+        words="holds {on}",
+    ),
     ActionType.INPUT_TEXT: Takes(
-        "type up to 120 characters into a text field", target=True, required=("text",), optional=("clear_text",)
+        "type up to 120 characters into a text field",
+        target=True,
+        required=("text",),
+        optional=("clear_text",),
+        effect=_typed,
+        words="types “{text}” into {on}",
     ),
     ActionType.SCROLL: Takes(
         "scroll the screen or a list in that direction",
         "scroll the screen in that direction",
         required=("direction",),
         optional=("index",),
+        effect=lambda car, do, key: car.scroll(key, do.direction or Direction.DOWN),
+        words="scrolls {direction}",
     ),
     ActionType.SWIPE: Takes(
         "swipe from that point; a slider is set where the finger is lifted",
         target=True,
         required=("direction",),
         optional=("distance_px",),
+        effect=lambda car, do, x, y: car.swipe(x, y, do.direction or Direction.UP, do.distance_px),
+        words="swipes {direction}{far} from {on}",
     ),
-    ActionType.KEYBOARD_ENTER: Takes("press enter"),
-    ActionType.NAVIGATE_HOME: Takes("go to the home screen"),
-    ActionType.NAVIGATE_BACK: Takes("go back one screen"),
-    ActionType.OPEN_APP: Takes("open a screen by its name", required=("app_name",)),
+    ActionType.KEYBOARD_ENTER: Takes("press enter", effect=lambda car, do: car.key_enter()),
+    ActionType.NAVIGATE_HOME: Takes("go to the home screen", effect=lambda car, do: car.home(), words="goes home"),
+    ActionType.NAVIGATE_BACK: Takes("go back one screen", effect=lambda car, do: car.back(), words="goes back"),
+    ActionType.OPEN_APP: Takes(
+        "open a screen by its name",
+        required=("app_name",),
+        effect=lambda car, do: car.open_app(do.app_name or ""),
+        words="opens {app_name}",
+    ),
     ActionType.WAIT: Takes(
         "let 1 to 10 seconds pass",
         about_bounded="let that many seconds pass, or one; while watching over a drive, until something changes",
         optional=("seconds",),
+        words="waits {for_s} s",
     ),
     ActionType.ANSWER: Takes(
         "tell the driver something, in up to 120 characters: it answers a question, it is no warning",
         required=("text",),
+        words="says “{text}”",
     ),
     ActionType.STATUS: Takes(
         "declare how it ended: complete when it is done; infeasible, after an answer that tells the driver why, "
@@ -116,31 +179,59 @@ FIELDS: Mapping[ActionType, Takes] = {
         "to do (reason already_so or none)",
         required=("goal_status",),
         optional=("reason",),
+        words="declares {goal_status}{because}",
     ),
     ActionType.SHOW_ALERT: Takes(
         "warn the driver on screen and by voice, when the driver has asked to be warned about danger or limits; "
         "a text has up to 120 characters",
         required=("kind",),
         optional=("severity", "text", "speed_kmh"),
+        effect=_alerted,
+        words="warns the driver of {kind}",
     ),
-    ActionType.HAZARD_LIGHTS: Takes("switch the hazard lights", required=("on",)),
-    ActionType.EMERGENCY_CALL: Takes("call the emergency services"),
-    ActionType.REQUEST_SLOW_DOWN: Takes("ask for a lower speed", required=("speed_kmh",)),
-    ActionType.REQUEST_REROUTE: Takes("ask for another route", optional=("destination",)),
-    ActionType.PULL_OVER: Takes("ask the driver to stop at the side"),
+    ActionType.HAZARD_LIGHTS: Takes(
+        "switch the hazard lights",
+        required=("on",),
+        effect=lambda car, do: car.hazards(bool(do.on)),
+        words="switches the hazard lights {switched}",
+    ),
+    ActionType.EMERGENCY_CALL: Takes("call the emergency services", effect=lambda car, do: car.emergency_call()),
+    ActionType.REQUEST_SLOW_DOWN: Takes(
+        "ask for a lower speed", required=("speed_kmh",), effect=_slowed, words="asks for {speed_kmh:g} km/h"
+    ),
+    ActionType.REQUEST_REROUTE: Takes(
+        "ask for another route",
+        optional=("destination",),
+        effect=lambda car, do: car.ask_road(Reroute(do.destination or "")),
+        words="asks for another route{to}",
+    ),
+    ActionType.PULL_OVER: Takes(
+        "ask the driver to stop at the side", effect=lambda car, do: car.ask_road(PullOver())
+    ),
     ActionType.QUERY: Takes(
-        "ask for facts about the car's position, rules, hazards, weather or traffic", required=("text",)
+        "ask for facts about the car's position, rules, hazards, weather or traffic",
+        required=("text",),
+        words="asks “{text}”",
     ),
     ActionType.ESTIMATE_POSITION: Takes(
-        'say where the car is, as "LON,LAT" in degrees, while GPS is out', required=("text",)
+        'say where the car is, as "LON,LAT" in degrees, while GPS is out',
+        required=("text",),
+        effect=_estimated,
+        words="estimates the position at {text}",
     ),
     ActionType.ASK_DRIVER: Takes(
         "ask the driver one question (at most 120 characters) about something you cannot find out otherwise. List "
         "all options, and ask before you change anything. Asking distracts the driver",
         required=("text",),
+        effect=lambda car, do: car.ask_driver(do.text or ""),
+        words="asks the driver “{text}”",
     ),
     ActionType.CALL: Takes(
-        "call a function of the car, where functions may be called", required=("function",), optional=("arguments",)
+        "call a function of the car, where functions may be called",
+        required=("function",),
+        optional=("arguments",),
+        effect=lambda car, do: car.call(do.function or "", do.arguments or {}),
+        words="calls {function}{given}",
     ),
 }
 
@@ -202,9 +293,7 @@ def check(action: Action) -> Action:
         ActionError: a field is missing, extra or out of range; the message names it.
     """
     takes = FIELDS[action.action_type]
-    given = {field.name for field in dataclass_fields(action) if getattr(action, field.name) is not None} - {
-        "action_type"
-    }
+    given = {name for name, value in _each(action) if value is not None} - {"action_type"}
     name = f"action {action.action_type!s}"
     if takes.target:
         by_index, by_point = "index" in given, {"x", "y"} & given
@@ -368,7 +457,6 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
     Returns:
         The result. A wrong action changes nothing.
     """
-    kind = action.action_type
     if action.index is not None and not elements:
         return Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("there is no list of elements; give x and y"))
     if action.index is not None and not 0 <= action.index < len(elements):
@@ -380,63 +468,58 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
                 last=len(elements) - 1,
             ),
         )
-    if FIELDS[kind].target:
-        return _touch(action, cockpit, *point(action, elements))
-    match kind:
-        case ActionType.SCROLL:
-            target = None if action.index is None else elements[action.index]
-            key = key_of(target.resource_id) if target else ""
-            return cockpit.scroll(key, action.direction or Direction.DOWN)
-        case ActionType.KEYBOARD_ENTER:
-            return cockpit.key_enter()
-        case ActionType.NAVIGATE_HOME:
-            return cockpit.home()
-        case ActionType.NAVIGATE_BACK:
-            return cockpit.back()
-        case ActionType.OPEN_APP:
-            return cockpit.open_app(action.app_name or "")
-        case ActionType.SHOW_ALERT:
-            assert action.kind is not None
-            severity = action.severity or Severity.WARNING
-            return cockpit.alert(Alert(action.kind, severity, action.text or "", action.speed_kmh))
-        case ActionType.HAZARD_LIGHTS:
-            return cockpit.hazards(bool(action.on))
-        case ActionType.EMERGENCY_CALL:
-            return cockpit.emergency_call()
-        case ActionType.REQUEST_SLOW_DOWN:
-            assert action.speed_kmh is not None
-            return cockpit.ask_road(SlowDown(action.speed_kmh))
-        case ActionType.REQUEST_REROUTE:
-            return cockpit.ask_road(Reroute(action.destination or ""))
-        case ActionType.PULL_OVER:
-            return cockpit.ask_road(PullOver())
-        case ActionType.ESTIMATE_POSITION if position(action.text or "") is None:
-            return Feedback(
-                FeedbackCode.REFUSED, say('no position; give "LON,LAT" in degrees, e.g. "2.3522,48.8566"')
-            )
-        case ActionType.ASK_DRIVER:
-            return cockpit.ask_driver(action.text or "")
-        case ActionType.CALL:
-            return cockpit.call(action.function or "", action.arguments or {})
-        case _:  # wait, answer, status, query, estimate_position: nothing in the cockpit moves
-            return Feedback(FeedbackCode.OK, "")
+    takes = FIELDS[action.action_type]
+    if takes.target:
+        return takes.effect(cockpit, action, *point(action, elements))
+    if "index" in takes.optional:
+        return takes.effect(
+            cockpit, action, "" if action.index is None else key_of(elements[action.index].resource_id)
+        )
+    return takes.effect(cockpit, action)
 
 
-def _touch(action: Action, cockpit: Cockpit, x: int, y: int) -> Feedback:
-    match action.action_type:
-        case ActionType.CLICK:
-            return cockpit.tap(x, y)
-        case ActionType.DOUBLE_TAP:
-            return cockpit.double_tap(x, y)
-        case ActionType.LONG_PRESS:
-            return cockpit.long_press(x, y)
-        case ActionType.SWIPE:
-            return cockpit.swipe(x, y, action.direction or Direction.UP, action.distance_px)
-        case _:
-            focused = cockpit.tap(x, y)
-            if focused.code not in (FeedbackCode.OK, FeedbackCode.NO_EFFECT):
-                return focused
-            return cockpit.type_text(action.text or "", clear=bool(action.clear_text))
+def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
+    """Describes an action, as a sentence without a subject.
+
+    Args:
+        action: None if the agent raised, or its answer could not be read.
+        elements: the list the agent saw when it acted.
+    """
+    if action is None:
+        return "gives no action"
+    because = action.reason not in (None, Reason.NONE)
+    given = ", ".join(
+        f"{name} {json.dumps(value) if isinstance(value, bool) else value}"
+        for name, value in (action.arguments or {}).items()
+    )
+    told = {name: _plain(value) if isinstance(value, StrEnum) else value for name, value in _each(action)} | {
+        "on": _target_in_words(action, elements),
+        "far": "" if action.distance_px is None else f" by {action.distance_px} px",
+        "for_s": action.seconds or 1,
+        "because": f" ({_plain(action.reason)})" if because else "",
+        "switched": "on" if action.on else "off",
+        "to": f" to {action.destination}" if action.destination else "",
+        "given": f" with {given}" if given else "",
+    }
+    return FIELDS[action.action_type].words.format_map(told) or _plain(action.action_type)
+
+
+def _each(action: Action) -> Iterator[tuple[str, Any]]:
+    return ((field.name, getattr(action, field.name)) for field in dataclass_fields(action))
+
+
+def _plain(name: str | None) -> str:
+    return (name or "").replace("_", " ")
+
+
+def _target_in_words(action: Action, elements: Sequence[Element]) -> str:
+    if action.index is None:
+        return "the screen" if action.x is None else f"the screen at {action.x}, {action.y}"
+    if not 0 <= action.index < len(elements):
+        return f"element {action.index}, which does not exist"
+    element = elements[action.index]
+    name = element.text or element.content_description or element.resource_id or f"element {action.index}"
+    return f"“{name}”"
 
 
 def point(action: Action, elements: Sequence[Element]) -> tuple[int, int]:

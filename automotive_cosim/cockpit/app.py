@@ -1,6 +1,6 @@
 """What an app is: its screens, where it is opened, and what it keeps.
 
-An app is a folder in ``apps/`` with an ``app.py`` that has an ``APP``; ``registry`` finds it there.
+An app is a file in ``apps/`` that has an ``APP``, or a folder whose ``app.py`` has it; ``registry`` finds it there.
 """
 
 from __future__ import annotations

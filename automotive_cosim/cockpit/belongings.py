@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from automotive_cosim.cockpit.app import Where
-from automotive_cosim.cockpit.apps.calendar.state import Agenda, Appointment
+from automotive_cosim.cockpit.apps.calendar import Agenda, Appointment
 from automotive_cosim.cockpit.apps.media.state import Entry, Library
-from automotive_cosim.cockpit.apps.memo.state import Memos
+from automotive_cosim.cockpit.apps.memo import Memos
 from automotive_cosim.cockpit.apps.phone.state import Contact, Directory, Phone, Thread
-from automotive_cosim.cockpit.apps.store.state import Installed
-from automotive_cosim.cockpit.apps.trip.state import FROM_HERE, TripMeter, TripMeters
+from automotive_cosim.cockpit.apps.store import Installed
+from automotive_cosim.cockpit.apps.trip import FROM_HERE, TripMeter, TripMeters
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.cockpit.state import State

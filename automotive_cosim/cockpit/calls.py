@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.app import App, Where
-from automotive_cosim.cockpit.apps.store.state import Installed
+from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.equipment import equipped
 from automotive_cosim.cockpit.functions import CarFunction, as_told, groups, of_signals, reading, unknown
 from automotive_cosim.cockpit.language import translated

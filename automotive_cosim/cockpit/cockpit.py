@@ -30,7 +30,7 @@ from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.apps.phone.commands import CallEmergency
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
-from automotive_cosim.cockpit.apps.store.state import Installed
+from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.belongings import NOTHING, Belongings, bring
 from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.changes import CarChange, schedule

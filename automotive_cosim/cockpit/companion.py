@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.apps.home.screens import METRES_PER_PIXEL, drive_card, media_card
+from automotive_cosim.cockpit.apps.home import METRES_PER_PIXEL, drive_card, media_card
 from automotive_cosim.cockpit.apps.map.scene import ego
 from automotive_cosim.cockpit.apps.map.screens import map_view, street_plate
 from automotive_cosim.cockpit.geometry import Rect

@@ -7,7 +7,7 @@ from functools import cache, lru_cache, partial
 from typing import Any
 
 from automotive_cosim.cockpit.app import Where
-from automotive_cosim.cockpit.apps.notifications.screens import wanting
+from automotive_cosim.cockpit.apps.notifications import wanting
 from automotive_cosim.cockpit.apps.phone.commands import DeclineCall, TakeCall
 from automotive_cosim.cockpit.apps.phone.state import Phone
 from automotive_cosim.cockpit.apps.settings.state import wifi

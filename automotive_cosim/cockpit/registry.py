@@ -1,4 +1,4 @@
-"""The apps that there are: every folder of ``apps/``."""
+"""The apps that there are: every file and folder of ``apps/``."""
 
 from __future__ import annotations
 
@@ -19,8 +19,12 @@ def apps() -> Mapping[str, App]:
     Raises:
         ValueError: two apps or two screens have the same name.
     """
-    folders = sorted(each.name for each in files(_PACKAGE).iterdir() if each.joinpath("app.py").is_file())
-    found: list[App] = [import_module(f"{_PACKAGE}.{folder}.app").APP for folder in folders]
+    here = list(files(_PACKAGE).iterdir())
+    modules = [
+        each.name.removesuffix(".py") for each in here if each.name.endswith(".py") and each.name != "__init__.py"
+    ]
+    modules += [f"{each.name}.app" for each in here if each.joinpath("app.py").is_file()]
+    found: list[App] = [import_module(f"{_PACKAGE}.{module}").APP for module in sorted(modules)]
     found.sort(key=lambda app: app.order)
     for kind, names in (
         ("apps", [name for app in found for name in (app.name, *app.aliases)]),

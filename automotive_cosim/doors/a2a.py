@@ -11,7 +11,7 @@ import asyncio
 import json
 import threading
 import time
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Callable, Collection, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,11 +21,12 @@ from urllib.parse import urlsplit
 import uvicorn
 from a2a.helpers.proto_helpers import get_data_parts, new_data_part, new_task_from_user_message, new_text_part
 from a2a.server.agent_execution import AgentExecutor, RequestContext
+from a2a.server.context import ServerCallContext
 from a2a.server.events import EventQueue
 from a2a.server.request_handlers import DefaultRequestHandler
 from a2a.server.routes import create_agent_card_routes, create_jsonrpc_routes
 from a2a.server.tasks import InMemoryTaskStore, TaskUpdater
-from a2a.types import AgentCapabilities, AgentCard, AgentInterface, AgentSkill, TaskState
+from a2a.types import AgentCapabilities, AgentCard, AgentInterface, AgentSkill, Task, TaskState
 from starlette.applications import Starlette
 
 from automotive_cosim import __version__
@@ -41,6 +42,10 @@ from automotive_cosim.run.trial_row import TrialRow
 MODES = ["text/plain", "application/json"]
 GRACE_S = 1
 """Seconds in which connections have to end with the server; a stream of progress would not."""
+MOST_WAITING = 16
+"""Assessments at once, of which one runs: fewer than there are threads."""
+MOST_TASKS = 64
+"""Kept with their requests and results."""
 LOOK_S = 0.5
 """Between two looks whether an assessment was cancelled."""
 
@@ -87,6 +92,10 @@ class Assessor(AgentExecutor):
             task = new_task_from_user_message(context.message)
             await event_queue.enqueue_event(task)
         updater = TaskUpdater(event_queue, task.id, task.context_id)
+        if len(self._stops) >= MOST_WAITING:
+            words = f"{MOST_WAITING} assessments run or wait already; ask again later"
+            await updater.reject(updater.new_agent_message([new_text_part(words)]))
+            return
         stop = self._stops[task.id] = threading.Event()
         try:
             await self._assess(context, updater, stop)
@@ -106,13 +115,18 @@ class Assessor(AgentExecutor):
             with suppress(KeyError):
                 self._stops[task.id].set()
 
+    @property
+    def running(self) -> Collection[str]:
+        """Ids of the tasks that run or wait, as they are at any time."""
+        return self._stops.keys()
+
     def close(self) -> None:
         """Ends every assessment."""
         for stop in self._stops.values():
             stop.set()
 
     async def _assess(self, context: RequestContext, updater: TaskUpdater, stop: threading.Event) -> None:
-        asked = read_assessment(_text(context))
+        asked = await asyncio.to_thread(read_assessment, _text(context))
         await asyncio.to_thread(asked.plan.check)
         async with self._turn:
             folder = stamped_folder("assessment")
@@ -129,6 +143,21 @@ class Assessor(AgentExecutor):
         words, data = await asyncio.to_thread(_result, asked, folder)
         await updater.add_artifact([new_text_part(words), new_data_part(data)], name="Result")
         await updater.complete()
+
+
+class _Tasks(InMemoryTaskStore):
+    """The newest tasks, and those that run: each keeps its request."""
+
+    def __init__(self, running: Collection[str]) -> None:
+        super().__init__()
+        self._running, self._kept = running, dict[str, ServerCallContext]()
+
+    async def save(self, task: Task, context: ServerCallContext) -> None:
+        self._kept[task.id] = context
+        await super().save(task, context)
+        over = [each for each in self._kept if each not in self._running][: max(0, len(self._kept) - MOST_TASKS)]
+        for old in over:
+            await self.delete(old, self._kept.pop(old))
 
 
 def _result(asked: Assessment, folder: Path) -> tuple[str, Any]:
@@ -183,7 +212,7 @@ def make_app(assessor: Assessor, host: str, port: int, url: str) -> Guarded:
         url: its address, as its card says.
     """
     told = card(url)
-    handler = DefaultRequestHandler(agent_executor=assessor, task_store=InMemoryTaskStore(), agent_card=told)
+    handler = DefaultRequestHandler(agent_executor=assessor, task_store=_Tasks(assessor.running), agent_card=told)
     routes = [
         *create_jsonrpc_routes(handler, "/", enable_v0_3_compat=True),
         *create_agent_card_routes(told),

@@ -39,10 +39,13 @@ CONFIG = (
     *(each.name for each in TABLE),
 )
 """What an assessment may set of a plan."""
+NAMES = ("tasks", "scenarios")
 DEFAULTS: Json = {"interface": ["functions"], "see": ["nothing"]}
 """How agents of CAR-bench's contract are played unless the assessment says otherwise."""
 MOST_RUNS = 100_000
-"""Of one assessment."""
+"""Of one assessment, counted before it is unfolded."""
+MOST_PARTICIPANTS, MOST_WORDS = 32, 1000
+"""Of one assessment: agents, and names of tasks and scenarios."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,13 +80,16 @@ def read_assessment(text: str) -> Assessment:
     for name in config:
         if name not in CONFIG:
             raise UnknownNameError("setting of an assessment", name, CONFIG)
+    if len(named) > MOST_PARTICIPANTS or sum(map(_length, (config.get(name) for name in NAMES))) > MOST_WORDS:
+        most = f"{MOST_PARTICIPANTS} participants and {MOST_WORDS:,} names of tasks and scenarios"
+        raise UserError(f"the assessment has too many names; at most {most} are allowed")
     values = {name: _whole(value) for name, value in config.items()}
     participants = {str(role): url.rstrip("/") for role, url in named.items()}
     plan = make_plan({**DEFAULTS, **values, "agents": [PREFIX + url for url in participants.values()]})
     for name in plan.scenarios:
         if name not in shipped():  # no folder of this machine
             raise UnknownNameError("scenario", name, shipped(), "automotive-cosim scenarios list")
-    if (count := len(plan.jobs())) > MOST_RUNS:
+    if (count := plan.most_runs()) > MOST_RUNS:
         raise UserError(
             f"the assessment has {count:,} runs; at most {MOST_RUNS:,} are allowed, so take fewer seeds"
         )
@@ -140,6 +146,10 @@ def _rate(rate: Rate) -> Json:
         "rate": rate.value,
         "interval": None if rate.interval is None else asdict(rate.interval),
     }
+
+
+def _length(value: object) -> int:
+    return len(value) if isinstance(value, list) else 0
 
 
 def _whole(value: Any) -> Any:

@@ -12,6 +12,7 @@ import inspect
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Annotated, Any
 
 import anyio.from_thread
@@ -28,6 +29,7 @@ from automotive_cosim.doors.shared import (
     SERVING,
     called,
     conditions_of,
+    own_scenario,
     takes_blanks,
     takes_conditions,
     trial,
@@ -106,7 +108,9 @@ class CockpitServer(MCPServer[Any]):
         return await super().call_tool(name, arguments, context)
 
 
-def make_server(service: EpisodeService, interface: Interface = Interface.TOUCH) -> MCPServer[Any]:
+def make_server(
+    service: EpisodeService, interface: Interface = Interface.TOUCH, scenarios: Path | None = None
+) -> MCPServer[Any]:
     """A server of the service's episodes, not yet running. The caller closes the service.
 
     Args:
@@ -114,10 +118,11 @@ def make_server(service: EpisodeService, interface: Interface = Interface.TOUCH)
         interface: how agents act unless ``start`` says otherwise. With ``functions`` or ``both``, every function of
             the car is a tool from the beginning, else from the first episode that is started with them: the
             protocol has no sessions that could have tools of their own.
+        scenarios: folder of the scenarios that ``start`` takes beside the shipped ones.
     """
     told = INSTRUCTIONS if interface.touches else CALLING
     server = CockpitServer("automotive-cosim", instructions=told, version=__version__, log_level="WARNING")
-    tools = CockpitTools(service, server, interface)
+    tools = CockpitTools(service, server, interface, scenarios)
     acting = (tools.act,) if interface.touches else ()
     for tool in (tools.list_tasks, tools.list_drives, tools.start, tools.observe, *acting, tools.finish):
         server.add_tool(tool)
@@ -149,7 +154,9 @@ class CockpitTools:
         service: EpisodeService,
         server: MCPServer[Any] | None = None,
         interface: Interface = Interface.TOUCH,
+        scenarios: Path | None = None,
     ) -> None:
+        self._scenarios = scenarios
         self._service = service
         self._server = server
         self._interface = interface
@@ -230,7 +237,8 @@ class CockpitTools:
             under = replace(under, interface=self._interface)
         if under.interface.calls:
             self.add_functions()
-        spec = trial(task, drive, half, seed, scenario, minutes, under, errands=errands)
+        where = own_scenario(scenario, self._scenarios)
+        spec = trial(task, drive, half, seed, where, minutes, under, errands=errands)
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

@@ -9,7 +9,9 @@ Needs the package ``openenv`` (extra ``openenv``).
 from __future__ import annotations
 
 import base64
+import os
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
@@ -18,7 +20,15 @@ from pydantic import Field
 
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.shared import conditions_of, functions_of, reward_of, shared_service, trial
+from automotive_cosim.doors.shared import (
+    SCENARIOS,
+    conditions_of,
+    functions_of,
+    own_scenario,
+    reward_of,
+    shared_service,
+    trial,
+)
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.blank import is_blank
 from automotive_cosim.interface.functions import action_json, as_openai
@@ -93,7 +103,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
             task: id of the task; ``road_speed_80_in_50`` if neither it nor a drive is given.
             half: ``first`` or ``second``.
             pictures: whether the agent sees the screen.
-            scenario: in place of its own.
+            scenario: in place of its own: a shipped one, or one in the folder ``AUTOMOTIVE_COSIM_SCENARIOS``.
             drive: a family of drives instead of a task.
             minutes: when a drive is over, if its script ends later.
             errands: whether people aboard also ask for things on a drive.
@@ -107,7 +117,9 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         if not drive:
             task = task or FIRST
         under = conditions_of(conditions)
-        spec = trial(task, drive, half, seed, scenario, minutes, under, errands=errands)
+        folder = os.environ.get(SCENARIOS)
+        where = own_scenario(scenario, Path(folder) if folder else None)
+        spec = trial(task, drive, half, seed, where, minutes, under, errands=errands)
         turn = self._service.start(spec, ALL if pictures else ALL - {Channel.SCREENSHOT})
         self._episode_id = turn.episode_id
         self._state = CarState(episode_id=episode_id, task=task or "", half=half, drive=drive or "", seed=spec.seed)

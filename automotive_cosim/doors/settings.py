@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 from annotated_types import Ge, Le
@@ -37,6 +38,8 @@ class McpSettings:
     """Maximum number of concurrent episodes."""
     idle_s: Annotated[float, Ge(1), Le(1e6), Option("idle-s", form="SECONDS")] = 900.0
     """Seconds after which an idle episode is closed."""
+    scenarios: Annotated[Path | None, Option(form="FOLDER", variable="AUTOMOTIVE_COSIM_SCENARIOS")] = None
+    """A folder of scenarios of your own, which assistants may name beside the shipped ones."""
     interface: Annotated[Interface, OneOf(Interface, "interface"), Option(form="|".join(Interface))] = (
         Interface.TOUCH
     )

@@ -6,6 +6,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
+from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
@@ -23,6 +24,7 @@ from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import Function, action_json, offered
+from automotive_cosim.scenarios import shipped
 from automotive_cosim.service import EpisodeService, ServiceLimits
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -132,6 +134,30 @@ def trial(
         name = "errands" if minutes is None else "minutes"
         raise UserError(f"{name} can be given for a drive alone; a task ends when it is declared")
     return EpisodeSpec(str(task), half, scenario, seed=seed or 0, conditions=under)
+
+
+SCENARIOS = "AUTOMOTIVE_COSIM_SCENARIOS"
+"""Environment variable with the folder of the owner's own scenarios."""
+
+
+def own_scenario(name: str | None, folder: Path | None) -> str | None:
+    """What a client of a server names as a scenario: a shipped one, or one in the folder that the owner said.
+
+    Nothing else on this machine can be named, nor found out.
+
+    Args:
+        name: as it came; None or empty for the task's own.
+        folder: whose folders are the owner's scenarios; None for none.
+
+    Raises:
+        UnknownNameError: there is no such scenario.
+    """
+    if not name or name in shipped():
+        return name
+    own = {} if folder is None else {each.parent.name: each.parent for each in folder.glob("*/scenario.toml")}
+    if name not in own:
+        raise UnknownNameError("scenario", name, [*shipped(), *sorted(own)])
+    return str(own[name])
 
 
 HANDS: Mapping[Interface, tuple[str, str]] = {

@@ -2,8 +2,9 @@
 
 netconvert 1.28 states version 1.4, but writes an ``offset`` that came with 1.5. It gives curves inexact lengths. It
 crosses some junctions, most of them by turning back, with a jump of the heading, so that lanes do not meet. In
-left-hand networks it puts the lanes of junctions on the left, but numbers them as on the right. Coordinates are
-those of the network, as in every record.
+left-hand networks it puts the lanes of junctions on the left, but numbers them as on the right. Its ids of signals,
+``c0_3``, are no numbers, which some readers expect: signals are numbered here, and have SUMO's ids as names.
+Coordinates are those of the network, as in every record.
 """
 
 from __future__ import annotations
@@ -17,6 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.writing import copy
+from automotive_cosim.formats.xml import read_tree, write_xml
 from automotive_cosim.traffic.network import drives_on_left
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
@@ -26,6 +30,8 @@ SAME_HEADING_RAD = 1e-3
 """Roads whose headings differ by less meet without a kink."""
 TURNS_BACK_ABOVE_RAD = 2.5
 """So large a turn is one back, to the side on which it ends."""
+SHORT_M = 1e-6
+"""By so much a curve is stated shorter than it is: readers that look for a place beyond its end find none."""
 POINT_M, ROOM_M = 0.01, 1.0
 """A shorter way through a junction is a point; the road before it ends this much earlier."""
 
@@ -47,14 +53,14 @@ def write_opendrive(net: Path, target: Path) -> None:
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-opendrive-") as name:
         scratch = Path(name)
         ours = "road.net.xml.gz" if net.name.endswith(".gz") else "road.net.xml"
-        (scratch / ours).write_bytes(net.read_bytes())
+        copy(net, scratch / ours, bounds.UNPACKED_BYTES)
         ok, printed = run("netconvert", ("-s", ours, "--opendrive-output=road.xodr"), scratch)
         if not ok:
             raise ScenarioError(f"netconvert cannot write {net} as OpenDRIVE: {first_error(printed)}")
-        root = ET.parse(scratch / "road.xodr").getroot()
+        root = read_tree(scratch / "road.xodr", error=ScenarioError)
     mend(root, left_hand=drives_on_left(net))
     ET.indent(root)
-    ET.ElementTree(root).write(target, encoding="UTF-8", xml_declaration=True)
+    write_xml(target, root)
 
 
 def mend(root: ET.Element, *, left_hand: bool) -> None:
@@ -69,6 +75,7 @@ def mend(root: ET.Element, *, left_hand: bool) -> None:
     header.attrib.pop("date", None)
     header.set("revMajor", VERSION[0])
     header.set("revMinor", VERSION[2:])
+    _take_offset_in(header)
     roads = {road.attrib["id"]: road for road in root.iter("road")}
     ways = [road for road in roads.values() if road.attrib["junction"] != "-1"]
     _make_room(ways, roads)
@@ -76,8 +83,32 @@ def mend(root: ET.Element, *, left_hand: bool) -> None:
         _join(way, roads)
     for road in roads.values():
         _measure(road)
+    numbers = {signal.attrib["id"]: str(number) for number, signal in enumerate(root.iter("signal"))}
+    for signal in root.iter("signal"):
+        signal.set("name", signal.attrib["id"])
+        signal.set("id", numbers[signal.attrib["id"]])
+    for control in root.iter("control"):
+        control.set("signalId", numbers[control.attrib["signalId"]])
     if left_hand:
         _keep_left(root, roads)
+
+
+def _take_offset_in(header: ET.Element) -> None:
+    """Lets the projection begin where the network does: some readers add an ``offset``, others subtract it."""
+    offset, reference = header.find("offset"), header.find("geoReference")
+    if offset is None or reference is None:
+        return
+    terms = dict(term.lstrip("+").partition("=")[::2] for term in (reference.text or "").split())
+    if terms.get("proj") == "utm":  # which has no origin of its own
+        north_m = "0" if terms.pop("south", None) is None else "10000000"
+        origin = {"lat_0": "0", "lon_0": f"{6 * int(terms.pop('zone')) - 183}", "k": "0.9996"}
+        terms |= {"proj": "tmerc", **origin, "x_0": "500000", "y_0": north_m}
+    if "proj" not in terms or terms.get("units", "m") != "m" or "to_meter" in terms:
+        return
+    for axis in "xy":
+        terms[f"{axis}_0"] = f"{float(terms.get(f'{axis}_0', '0')) - float(offset.attrib[axis]):.2f}"
+    reference.text = " ".join(f"+{name}={value}" if value else f"+{name}" for name, value in terms.items())
+    header.remove(offset)
 
 
 # --- curves ------------------------------------------------------------------------------------------------------
@@ -179,6 +210,8 @@ def _turn(to: float, of: float) -> float:
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
+PIECES = 32
+"""In which a curve is measured: one that turns back sharply needs them."""
 
 
 def _measure(road: ET.Element) -> None:
@@ -190,10 +223,10 @@ def _measure(road: ET.Element) -> None:
         curve = geometry.find("paramPoly3")
         geometry.set("s", f"{at_m:.8f}")
         if curve is not None and curve.get("pRange") == "normalized":
-            at = (_NODES + 1) / 2
+            at = (np.arange(PIECES)[:, None] + (_NODES + 1) / 2) / PIECES
             (_, b, c, d), (_, e, f, g) = _coefficients(curve, "U"), _coefficients(curve, "V")
             speeds = np.hypot(b + at * (2 * c + at * 3 * d), e + at * (2 * f + at * 3 * g))
-            geometry.set("length", f"{float(speeds @ _WEIGHTS) / 2:.8f}")
+            geometry.set("length", f"{float((speeds @ _WEIGHTS).sum()) / 2 / PIECES - SHORT_M:.8f}")
         at_m += float(geometry.attrib["length"])
     road.set("length", f"{at_m:.8f}")
 

@@ -20,9 +20,10 @@ from math import pi
 from pathlib import Path
 
 from automotive_cosim.contracts import SeenVehicle, Weather
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.exchange.bodies import FRONT_AXLE, GAP_S, REAR_AXLE, WHEEL_M, heading_rad, height_m, place_at
 from automotive_cosim.exchange.recording import Recording
+from automotive_cosim.formats.xml import read_tree, write_xml
 
 VERSIONS = "1.2", "1.3"
 """Of the standard that can be written."""
@@ -71,7 +72,7 @@ def write_openscenario(recording: Recording, target: Path, version: str = "1.3",
         raise UserError(f"OpenSCENARIO {version} cannot be written; give one of {', '.join(VERSIONS)}")
     root = _scenario(recording, version, road)
     ET.indent(root)
-    ET.ElementTree(root).write(target, encoding="UTF-8", xml_declaration=True)
+    write_xml(target, root)
 
 
 def _scenario(recording: Recording, version: str, road: Path | None) -> ET.Element:
@@ -291,10 +292,10 @@ def _environment(action: ET.Element, name: str, sky: Weather | None, local_time:
 
 
 def _signals_of(road: Path) -> Mapping[str, Mapping[int, str]]:
-    """The signals of an OpenDRIVE file by netconvert: light -> place of the link's letter -> id."""
+    """The signals of an exported OpenDRIVE file: light -> place of the link's letter -> id."""
     found: dict[str, dict[int, str]] = {}
-    for signal in ET.parse(road).getroot().iter("signal"):
-        light, _, place = signal.attrib["id"].rpartition("_")
+    for signal in read_tree(road, error=ScenarioError).iter("signal"):
+        light, _, place = signal.attrib["name"].rpartition("_")
         if light and place.isdecimal():
             found.setdefault(light, {})[int(place)] = signal.attrib["id"]
     return found

@@ -5,14 +5,19 @@ of traffic lights around the car, and the weather. Time 0 is the first recorded 
 network's (x to the east, y to the north). OSI places a vehicle by the middle of its bounding box, SUMO by its front
 bumper.
 Velocity and heading are SUMO's, acceleration and turning rate follow from the seconds before and after.
+
+A trace is a file of OSI's own (``.osi``) or one of MCAP (``.mcap``), which says what is in it. Names are those that
+OSI recommends, from which readers of ``.osi`` take the kind of its messages.
 """
 
 from __future__ import annotations
 
+import errno
+import tempfile
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from itertools import pairwise
 from math import cos, pi, sin
 from pathlib import Path
@@ -26,6 +31,7 @@ from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.exchange.bodies import GAP_S, REAR_AXLE, WHEEL_M, heading_rad, height_m, place_at
 from automotive_cosim.exchange.openscenario import FULL, KELVIN, OKTAS
 from automotive_cosim.exchange.recording import Recording
+from automotive_cosim.formats.writing import copy
 from automotive_cosim.run.road import Second
 
 NEEDS = f"OSI traces need the extra osi: {install_hint('osi')}"
@@ -59,30 +65,70 @@ FLASHING = "o"
 BULB_M = 0.2
 
 
+def trace_name(recording: Recording) -> str:
+    """The name that OSI recommends, without its end: time of the first second, kind, versions, number of messages.
+
+    Raises:
+        SetupError: the extra ``osi`` is not installed.
+    """
+    osi, protobuf = (version.replace(".", "") for version in _versions())
+    begins = recording.road.seconds[0].local_time
+    at = datetime.fromisoformat(begins).astimezone(UTC) if begins else datetime.fromtimestamp(0, UTC)
+    return f"{at:%Y%m%dT%H%M%SZ}_gt_{osi}_{protobuf}_{len(recording.road.seconds)}_trial"
+
+
 def write_osi(recording: Recording, target: Path, road: Path | None = None) -> None:
-    """Writes a trial as a binary trace; the same record gives the same bytes.
+    """Writes a trial as a trace; the same record gives the same bytes.
 
     Args:
         recording: the trial.
-        target: the file, ``*.osi``; readers take the kind of its messages from the end of its name, ``_gt``.
+        target: the file, ``*_gt_*.osi`` or ``*.mcap``.
         road: the road's OpenDRIVE file, which the messages then name.
 
     Raises:
         SetupError: the extra ``osi`` is not installed.
         OSError: it cannot be written.
     """
-    try:
-        from osi_utilities import SingleTraceWriter
+    osi, protobuf = _versions()
+    from osi_utilities import MultiTraceWriter, SingleTraceWriter
 
-        messages = _Messages(recording, "" if road is None else road.name)
+    messages = _Messages(recording, "" if road is None else road.name)
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-osi-") as scratch:
+        made = Path(scratch) / target.name  # its library takes no open file
+        with MultiTraceWriter() if target.suffix == ".mcap" else SingleTraceWriter() as trace:
+            about = {
+                "version": osi,
+                "zero_time": recording.road.seconds[0].local_time,
+                "description": recording.title,
+            }
+            for end in ("min", "max"):
+                about |= {f"{end}_osi_version": osi, f"{end}_protobuf_version": protobuf}
+            if not (trace.open(made, about) if target.suffix == ".mcap" else trace.open(made)):
+                raise OSError(errno.EIO, "its library cannot write it", str(target))
+            if target.suffix == ".mcap":
+                channel = {"osi_version": osi, "protobuf_version": protobuf, "description": recording.title}
+                named = {f"net.asam.osi.trace.channel.{name}": value for name, value in channel.items()}
+                trace.add_channel("GroundTruth", messages.truth, named)
+            if not all(map(trace.write_message, messages)):
+                raise OSError(errno.EIO, "its library cannot write it", str(target))
+        copy(made, target, made.stat().st_size)
+
+
+def _versions() -> tuple[str, str]:
+    """Of OSI's messages, and of the package that writes them.
+
+    Raises:
+        SetupError: the extra ``osi`` is not installed.
+    """
+    try:
+        import osi_utilities  # noqa: F401, whether it is there
+        from google import protobuf
+        from osi3 import osi_version_pb2
     except ImportError as error:
         raise SetupError(NEEDS) from error
-    with SingleTraceWriter() as trace:
-        if not trace.open(target):
-            raise OSError(f"cannot open {target}")
-        for message in messages:
-            if not trace.write_message(message):
-                raise OSError(f"cannot write {target}")
+    options: Any = osi_version_pb2.DESCRIPTOR.GetOptions()
+    osi = options.Extensions[osi_version_pb2.current_interface_version]
+    return f"{osi.version_major}.{osi.version_minor}.{osi.version_patch}", protobuf.__version__
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +152,7 @@ class _Messages:
             osi_version_pb2,
         )
 
-        self._truth = osi_groundtruth_pb2.GroundTruth
+        self.truth = osi_groundtruth_pb2.GroundTruth
         self._vehicle = osi_object_pb2.MovingObject
         self._light = osi_trafficlight_pb2.TrafficLight
         options: Any = osi_version_pb2.DESCRIPTOR.GetOptions()
@@ -123,7 +169,7 @@ class _Messages:
             yield self._message(second, _motions(around))
 
     def _message(self, second: Second, motions: Mapping[str, _Motion]) -> Any:
-        made = self._truth()
+        made = self.truth()
         made.version.CopyFrom(self._version)
         _stamp(made.timestamp, second.at_s - self._recording.begin_s)
         made.map_reference = self._road

@@ -17,7 +17,9 @@ class ExportFormats:
     opendrive: bool = False
     """Write the road as road.xodr, which scenario.xosc then names."""
     osi: bool = False
-    """Write trace_gt.osi, a trace of OSI ground truth."""
+    """Write a trace of OSI ground truth, by the name that OSI recommends, as .osi and as .mcap."""
+    ssam: bool = False
+    """Write trajectories.trj, for FHWA's Surrogate Safety Assessment Model."""
     fcd: bool = False
     """Write fcd.xml, SUMO's floating car data."""
     csv: bool = False

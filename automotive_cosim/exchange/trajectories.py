@@ -12,7 +12,8 @@ from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.formats.csvs import csv_text
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import drafted, write_whole
+from automotive_cosim.formats.xml import write_xml
 
 NEEDS = f"Parquet needs pandas and pyarrow: {install_hint('parquet')}"
 COLUMNS = ("at_s", *(entry.name for entry in fields(SeenVehicle)))
@@ -55,7 +56,8 @@ def write_frame(frame: Any, target: Path) -> None:
         SetupError: the extra ``parquet`` is not installed.
     """
     try:
-        frame.to_parquet(target, index=False)
+        with drafted(target) as file:
+            frame.to_parquet(file, index=False)
     except ImportError as error:
         raise SetupError(NEEDS) from error
 
@@ -72,4 +74,4 @@ def write_fcd(recording: Recording, target: Path) -> None:
                 signals=str(each.signals),
             )  # fmt: skip
     ET.indent(root)
-    ET.ElementTree(root).write(target, encoding="UTF-8", xml_declaration=True)
+    write_xml(target, root)

@@ -1,12 +1,15 @@
-"""An XML file as a tree whose elements know their lines, and a reader that refuses what it does not know."""
+"""An XML file as a tree whose elements know their lines, and which refuses what it is not asked for."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.exchange.parameters import evaluated
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.xml import scan
 
 
@@ -19,6 +22,10 @@ class XmlElement:
     line: int
     path: Path
     parts: list[XmlElement] = field(default_factory=list)
+    scope: Mapping[str, str] = field(default_factory=dict)
+    """The values of the parameters that hold here."""
+    taken: set[str] = field(default_factory=set)
+    """The attributes and parts that have been asked for."""
 
     def refused(self, why: str) -> ScenarioError:
         """The error that names it and its line."""
@@ -32,16 +39,25 @@ class XmlElement:
         """
         for part in self.parts:
             if part.tag not in tags:
-                raise part.refused(f"in <{self.tag}> is outside the subset that is imported; remove it")
+                raise part.refused(f"in <{self.tag}> is outside the subset that is imported here; remove it")
+        self.taken.update(tags)
         return self.parts
 
     def all(self, tag: str) -> list[XmlElement]:
         """Its parts with that tag."""
+        self.taken.add(tag)
         return [part for part in self.parts if part.tag == tag]
 
     def find(self, tag: str) -> XmlElement | None:
-        """Its first part with that tag."""
-        return next((part for part in self.parts if part.tag == tag), None)
+        """Its only part with that tag, or None.
+
+        Raises:
+            ScenarioError: it has several.
+        """
+        found = self.all(tag)
+        if len(found) > 1:
+            raise found[1].refused(f"is the second in <{self.tag}>, which can have one")
+        return found[0] if found else None
 
     def one(self, *tags: str) -> XmlElement:
         """Its only part, with one of these tags.
@@ -54,35 +70,91 @@ class XmlElement:
             raise self.refused(f"has {len(found)} parts; it needs one of {', '.join(tags)}")
         return found[0]
 
-    def text(self, name: str) -> str:
-        """The value of an attribute.
+    def part(self, tag: str) -> XmlElement:
+        """Its only part with that tag.
 
         Raises:
-            ScenarioError: it is missing, or an expression.
+            ScenarioError: it has none, or several.
         """
-        value = self.attributes.get(name)
+        found = self.find(tag)
+        if found is None:
+            raise self.refused(f"has no {tag}")
+        return found
+
+    def beside(self, name: str) -> Path:
+        """The file or folder that an attribute names: beside this file, below it, or in a folder next to its own.
+
+        Raises:
+            ScenarioError: the attribute is missing, or leads elsewhere on this machine.
+        """
+        given, here = self.text(name), self.path.resolve().parent
+        there, below = Path(here.anchor), Path().parts
+        with suppress(OSError, ValueError):
+            there = (here / given).resolve()
+            below = there.relative_to(here.parent).parts if here.parent != Path(here.anchor) else ()
+        is_next = len(below) > 1 or (len(below) == 1 and there.is_dir())
+        if Path(given).is_absolute() or not (is_next or there.is_relative_to(here)):
+            raise self.refused(f"names {given[:80]!r}, which is not beside it; copy it there")
+        return self.path.parent / given
+
+    def text(self, name: str, otherwise: str | None = None) -> str:
+        """The value of an attribute, with the values of parameters.
+
+        Raises:
+            ScenarioError: it is missing, or an expression that cannot be evaluated.
+        """
+        self.taken.add(name)
+        value = self.attributes.get(name, otherwise)
         if value is None:
             raise self.refused(f"has no {name}")
-        if value.startswith("$"):
-            raise self.refused(f"has the parameter {name} = {value}; give its value")
-        return value
+        try:
+            return evaluated(value, self.scope) if value.startswith(("$", "\\")) else value
+        except ValueError as error:
+            raise self.refused(f"has {name} = {value}, {error}") from error
 
     def number(self, name: str, otherwise: float | None = None) -> float:
-        """The value of an attribute as a number.
+        """The value of an attribute as a finite number.
 
         Raises:
-            ScenarioError: it is missing, or no number.
+            ScenarioError: it is missing, or no such number.
         """
+        self.taken.add(name)
         if otherwise is not None and name not in self.attributes:
             return otherwise
         try:
-            return float(self.text(name))
+            value = float(self.text(name))
         except ValueError as error:
             raise self.refused(f"has {name} = {self.attributes[name]!r}, which is no number") from error
+        if not abs(value) < float("inf"):
+            raise self.refused(f"has {name} = {self.attributes[name]!r}; a finite number is needed")
+        return value
+
+    def word(self, name: str, *words: str, otherwise: str | None = None) -> str:
+        """The value of an attribute, one of these.
+
+        Raises:
+            ScenarioError: it is missing, or another.
+        """
+        value = self.text(name, otherwise)
+        if value not in words:
+            raise self.refused(f"has {name} = {value!r}; what is imported is {', '.join(words)}")
+        return value
+
+    def is_true(self, name: str, *, otherwise: str | None = None) -> bool:
+        """The value of an attribute that is true or false.
+
+        Raises:
+            ScenarioError: it is missing, or neither.
+        """
+        return self.word(name, "true", "false", "1", "0", otherwise=otherwise) in ("true", "1")
 
 
-def read_tree(path: Path) -> XmlElement:
+def read_tree(path: Path, kept: frozenset[str] | None = None) -> XmlElement:
     """The root of an XML file.
+
+    Args:
+        path: the file.
+        kept: of which elements there is a node, in that of the nearest kept one around it; None keeps all.
 
     Raises:
         ScenarioError: it is missing or no XML.
@@ -91,12 +163,14 @@ def read_tree(path: Path) -> XmlElement:
     roots: list[XmlElement] = []
 
     def start(tag: str, attributes: dict[str, str], line: int) -> None:
-        made = XmlElement(tag, attributes, line, path)
-        (open_elements[-1].parts if open_elements else roots).append(made)
-        open_elements.append(made)
+        if kept is None or not open_elements or tag in kept:
+            made = XmlElement(tag, attributes, line, path)
+            (open_elements[-1].parts if open_elements else roots).append(made)
+            open_elements.append(made)
 
     def end(tag: str) -> None:
-        open_elements.pop()
+        if kept is None or tag in kept:
+            open_elements.pop()
 
-    scan(path, start, end, error=ScenarioError)
+    scan(path, start, end, error=ScenarioError, most_elements=bounds.KEPT_ELEMENTS)
     return roots[0]

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import gzip
-from collections.abc import Iterable
-from io import StringIO
+from collections.abc import Iterable, Iterator
+from io import StringIO, TextIOWrapper
 from pathlib import Path
 
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.files import opened
+from automotive_cosim.formats.writing import make_folder, write_whole
 
 
 def csv_text(columns: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
@@ -26,5 +28,29 @@ def write_packed_csv(path: Path, columns: Iterable[object], rows: Iterable[Itera
     Raises:
         OSError: it cannot be written.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     write_whole(path, gzip.compress(csv_text(columns, rows).encode(), mtime=0))
+
+
+def read_packed_csv(path: Path) -> Iterator[dict[str, str]]:
+    """The rows of what ``write_packed_csv`` wrote, by the names of their columns; none if the file is not there.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is no such table, or has too many cells.
+        LookupError: a row lacks a column, once that is asked for.
+    """
+    if not path.is_file():
+        return
+    left = bounds.CELLS
+    with opened(path) as file, TextIOWrapper(file, encoding="utf-8", newline="") as text:
+        lines = csv.reader(text)
+        try:
+            columns = next(lines, [])
+            for line in lines:
+                left -= len(line)
+                if left < 0:
+                    raise ValueError(f"it has over {bounds.CELLS:,} cells")
+                yield dict(zip(columns, line, strict=False))
+        except csv.Error as error:
+            raise ValueError(str(error)) from error

@@ -1,38 +1,24 @@
-"""Files that users give, texts written by hand and data that may be packed; and files that are written whole."""
+"""Files that users give: texts written by hand, and data that may be packed."""
 
 from __future__ import annotations
 
 import bz2
 import codecs
 import errno
-import gc
 import gzip
+import hashlib
 import io
 import json
 import lzma
 import os
 import stat
 import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.plain import plain
-
-MOST_BYTES = 2**20
-"""Nobody writes more by hand, and a wrong path may be a device that never ends."""
-
-MOST_UNPACKED_BYTES = 2**30
-FREELY_UNPACKED_BYTES = 2**26
-MOST_TIMES = 100
-"""An archive may unpack to 64 MB, or to a hundred times its size, at most to 1 GB. SUMO's and OpenStreetMap's XML
-packs ten to thirty times; a bomb, a thousand times."""
-CHUNK_BYTES = 2**16
-MOST_VALUES = 5_000_000
-"""JSON may hold that many values, which take at most half a gigabyte: 60 MB of empty lists would take thirty times
-their size. Half an hour of a drive has a million."""
+from automotive_cosim.formats import bounds
 
 
 def read_text(path: Path, error: type[UserError] = UserError) -> str:
@@ -43,18 +29,32 @@ def read_text(path: Path, error: type[UserError] = UserError) -> str:
     """
     try:
         with open_file(path) as file:
-            data = file.read(MOST_BYTES + 1)
+            data = file.read(bounds.TEXT_BYTES + 1)
         text = data.decode("utf-8-sig")
     except OSError as broken:
         raise error(f"cannot read {path}: {broken.strerror or broken}; give a file that is there") from broken
     except UnicodeDecodeError as broken:
         raise error(f"cannot read {path}: it is not UTF-8 text; save it as UTF-8") from broken
-    if len(data) > MOST_BYTES:
-        raise error(f"cannot read {path}: it is larger than {MOST_BYTES // 2**20} MB; give a file written by hand")
+    if len(data) > bounds.TEXT_BYTES:
+        most = f"{bounds.TEXT_BYTES / 2**20:g} MB"
+        raise error(f"cannot read {path}: it is larger than {most}; give a file written by hand")
     return text.replace("\r\n", "\n")
 
 
-def read_json(path: Path, most_values: int = MOST_VALUES) -> Any:
+def read_bytes(path: Path) -> bytes:
+    """The content of a file, at most ``bounds.WHOLE_BYTES``.
+
+    Raises:
+        OSError: it cannot be read, or is larger.
+    """
+    with open_file(path) as file:
+        data = file.read(bounds.WHOLE_BYTES + 1)
+    if len(data) > bounds.WHOLE_BYTES:
+        raise OSError(f"{path} is larger than {bounds.WHOLE_BYTES / 2**20:g} MB")
+    return data
+
+
+def read_json(path: Path, most_values: int | None = None) -> Any:
     """What a JSON file holds, also packed.
 
     Raises:
@@ -63,9 +63,9 @@ def read_json(path: Path, most_values: int = MOST_VALUES) -> Any:
     """
     data = bytearray()  # grows with the file: reading a gigabyte at once would reserve it
     with opened(path) as file:
-        while chunk := file.read(CHUNK_BYTES):
+        while chunk := file.read(bounds.CHUNK_BYTES):
             data += chunk
-            if len(data) > MOST_UNPACKED_BYTES:
+            if len(data) > bounds.UNPACKED_BYTES:
                 raise ValueError("it is larger than 1 GB")
     return parse_json(bytes(data), most_values)
 
@@ -75,35 +75,54 @@ def read_json_lines(path: Path) -> list[Any]:
 
     Raises:
         OSError: it cannot be read.
-        ValueError: a line is not JSON, or all together hold too many values.
+        ValueError: a line is not JSON or too long, or all together hold too many values.
     """
-    found, left = [], MOST_VALUES
     with opened(path) as file:
-        for line in file:
-            found.append(parse_json(line, left))
-            left -= _values(line)
-    return found
+        return list(json_lines(file))
 
 
 def read_whole_lines(path: Path) -> list[Any]:
-    """What the lines of a file of JSON hold that may still grow: a last line that is cut short is ignored.
+    """The same of a file that may still grow: a last line that is cut short is ignored.
 
     Raises:
         OSError: it cannot be read.
-        ValueError: a line is not JSON, or holds too many values.
+        ValueError: as ``read_json_lines``.
     """
-    with open_file(path) as file:
-        *lines, _cut = file.read().split(b"\n")
-    return [parse_json(line) for line in lines]
+    with opened(path, growing=True) as file:
+        return list(json_lines(file, growing=True))
 
 
-def parse_json(text: str | bytes, most_values: int = MOST_VALUES) -> Any:
+def json_lines(file: IO[bytes], most_values: int | None = None, *, growing: bool = False) -> Iterator[Any]:
+    """What each line of an open file of JSON holds.
+
+    Args:
+        file: the file.
+        most_values: of all lines together; by default ``bounds.VALUES``.
+        growing: whether to ignore a last line that is cut short.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: a line is not JSON or too long, or all together hold too many values.
+    """
+    left = bounds.VALUES if most_values is None else most_values
+    while line := file.readline(bounds.LINE_BYTES + 1):
+        if len(line) > bounds.LINE_BYTES:
+            raise ValueError(f"a line is longer than {bounds.LINE_BYTES >> 20} MB")
+        if not growing or line.endswith(b"\n"):
+            yield parse_json(line, left)
+            left -= _values(line)
+        elif line[:1] not in (b"{", b"["):
+            raise ValueError("it holds no lines of JSON")
+
+
+def parse_json(text: str | bytes, most_values: int | None = None) -> Any:
     """What a text of JSON holds.
 
     Raises:
         ValueError: it is not JSON, nested deeper than Python reads, or holds more values.
     """
-    if len(text) > most_values and _values(text) > most_values:
+    most = bounds.VALUES if most_values is None else most_values
+    if len(text) > most and _values(text) > most:
         raise ValueError("it holds too many values")
     try:
         return json.loads(text)
@@ -124,6 +143,19 @@ def is_file(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError):  # longer than names can be, or with a zero
         return False
+
+
+def file_sha256(path: Path) -> str:
+    """The hash of a file's content, in hexadecimal.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    found = hashlib.sha256()
+    with open_file(path) as file:
+        while piece := file.read(bounds.CHUNK_BYTES):
+            found.update(piece)
+    return found.hexdigest()
 
 
 def open_file(path: Path) -> IO[bytes]:
@@ -155,8 +187,12 @@ def _refuse_special(path: Path, mode: int) -> None:
         raise OSError(f"{path} is not a regular file")
 
 
-def opened(path: Path) -> IO[bytes]:
+def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
     """The bytes of a file, unpacked if they are gzip's, bzip2's or xz's, whatever it is called.
+
+    Args:
+        path: the file.
+        growing: whether an archive that is cut short ends there, since somebody still writes it.
 
     Raises:
         OSError: it cannot be opened or is not a regular file. Reading raises it too, where an archive is damaged or
@@ -166,36 +202,48 @@ def opened(path: Path) -> IO[bytes]:
     try:
         head = file.read(6)
         file.seek(0)
-        if head.startswith(b"\x1f\x8b"):
-            return io.BufferedReader(_Unpacked(gzip.GzipFile(fileobj=file), path, file), CHUNK_BYTES)
-        if head.startswith(b"BZh"):
-            return io.BufferedReader(_Unpacked(bz2.BZ2File(file), path, file), CHUNK_BYTES)
-        if head == b"\xfd7zXZ\x00":
-            return io.BufferedReader(_Unpacked(lzma.LZMAFile(file), path, file), CHUNK_BYTES)
+        unpack = next((unpack for magic, unpack in _PACKED.items() if head.startswith(magic)), None)
+        if unpack is not None:
+            return io.BufferedReader(_Unpacked(unpack(file), path, file, growing), bounds.CHUNK_BYTES)
     except BaseException:
         file.close()
         raise
     return file
 
 
+_PACKED: Mapping[bytes, Callable[[IO[bytes]], gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile]] = {
+    b"\x1f\x8b": lambda file: gzip.GzipFile(fileobj=file),
+    b"BZh": bz2.BZ2File,
+    b"\xfd7zXZ\x00": lzma.LZMAFile,
+}
+"""How archives begin."""
+
+
 class _Unpacked(io.RawIOBase):
     """An archive's content, up to a size."""
 
-    def __init__(self, content: gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile, path: Path, packed: IO[bytes]) -> None:
+    def __init__(
+        self, content: gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile, path: Path, packed: IO[bytes], growing: bool
+    ) -> None:
         self._content = content
+        self._growing = growing
         self._path = path
         self._packed = packed
         self._size = 0
         packed_bytes = path.stat().st_size
-        self._limit = max(FREELY_UNPACKED_BYTES, min(MOST_UNPACKED_BYTES, MOST_TIMES * packed_bytes))
+        most = min(bounds.UNPACKED_BYTES, bounds.TIMES_UNPACKED * packed_bytes)
+        self._limit = max(bounds.FREELY_UNPACKED_BYTES, most)
 
     def readable(self) -> bool:
         return True
 
     def readinto(self, buffer: bytearray | memoryview) -> int:  # type: ignore[override]
         try:
-            data = self._content.read(len(buffer))
+            # ``read`` would lose what comes before the end of an archive that is cut.
+            data = self._content.read1(len(buffer))
         except (EOFError, zlib.error, lzma.LZMAError) as error:
+            if self._growing and isinstance(error, EOFError):
+                return 0
             raise OSError(f"the archive is damaged: {error}") from error
         self._size += len(data)
         if self._size > self._limit:
@@ -224,40 +272,3 @@ def is_utf8(path: Path) -> bool:
     except UnicodeDecodeError:
         return False
     return True
-
-
-@contextmanager
-def drafted(path: Path) -> Iterator[Path]:
-    """A draft beside a file, which takes its place at the end, so that the file is there completely or not at all.
-
-    Raises:
-        OSError: it cannot be written; the error names the file, and not its draft.
-    """
-    draft = path.with_name(f".{path.name}.part")
-    try:
-        yield draft
-        draft.replace(path)
-    except OSError as error:
-        draft.unlink(missing_ok=True)
-        if error.errno is None:
-            raise
-        raise OSError(error.errno, error.strerror, str(path)) from error
-
-
-@contextmanager
-def without_collection() -> Iterator[None]:
-    """Collects no garbage meanwhile: what is read stays, and looking through it again and again takes a fifth of
-    the time of a large file."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
-
-
-def write_whole(path: Path, content: str | bytes) -> None:
-    """Writes a file, a text as plain text, as ``drafted`` does."""
-    with drafted(path) as draft:
-        draft.write_bytes(content if isinstance(content, bytes) else plain(content).encode())

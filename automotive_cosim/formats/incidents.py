@@ -177,15 +177,84 @@ class Pedestrians(Incident):
 
 
 @dataclass(frozen=True, slots=True)
+class VehicleCondition:
+    """What a scripted vehicle's action waits for; it is looked at once a second."""
+
+    what: Literal[
+        "acceleration",
+        "begun",
+        "collision_time",
+        "distance",
+        "ended",
+        "faster",
+        "headway",
+        "left",
+        "place",
+        "speed",
+        "stands",
+        "time",
+        "travelled",
+    ]
+    """``begun``, ``ended``: the actions called ``of`` have; ``place``: ``of`` comes within ``value`` metres of
+    ``x_m``, ``y_m``; ``time``: seconds after the departure; ``stands``, ``left`` (the road): for so many seconds;
+    ``speed`` in m/s, ``acceleration`` in m/s2, ``travelled`` in m; ``distance`` (m), ``headway`` and
+    ``collision_time`` (s) of ``of`` to ``to``, along the road; ``faster``: by so many m/s than it."""
+    of: str = ""
+    """The vehicle that it is about, ``ego`` for the ego, or the actions."""
+    to: str = ""
+    """The other vehicle."""
+    value: float = 0.0
+    """It holds above this, or if ``below`` under it."""
+    below: bool = False
+    """Whether it holds under ``value``, and before actions have begun or ended."""
+    x_m: float = 0.0
+    """Of the place, where the front bumper comes to."""
+    y_m: float = 0.0
+    """Of the place."""
+    bumper: bool = False
+    """Whether distances are those between the vehicles, rather than between their fronts."""
+    straight: bool = False
+    """Whether the distance is that as the crow flies."""
+    edge: Literal["none", "rising", "falling", "risingOrFalling"] = "none"
+    """Whether it must have become true, or untrue, in the last second."""
+    delay_s: Annotated[float, Ge(0)] = 0.0
+    """How long ago it must have held."""
+    group: Annotated[int, Ge(0)] = 0
+    """The conditions of one group must hold together; one group is enough."""
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleAction:
-    """What a scripted vehicle does at a time: another speed, another lane, or both."""
+    """What a scripted vehicle does at a time, or once something holds: another speed, another lane, or both."""
 
     at_s: Annotated[float, Ge(0)]
     """Seconds after the ego's departure."""
     speed_kmh: Annotated[float, Ge(0)] | None = None
     """The speed that it keeps from then on, as far as traffic allows."""
     lanes: int = 0
-    """Lanes to the left, or to the right if negative, into which it moves at once."""
+    """Lanes to the left, or to the right if negative, into which it moves at once; with ``of``, from its lane."""
+    name: str = ""
+    """What conditions call it; several may share a name."""
+    when: tuple[VehicleCondition, ...] = ()
+    """What must hold besides."""
+    of: str = ""
+    """The vehicle that ``speed_share`` and ``lanes`` refer to, ``ego`` for the ego; if empty, itself."""
+    speed_share: Annotated[float, Ge(0)] | None = None
+    """The speed that it keeps, as a share of that of ``of``."""
+    faster_kmh: float = 0.0
+    """How much faster than that share."""
+    keeps: bool = False
+    """Whether it goes on keeping to the speed of ``of``."""
+    lane: Annotated[int, Ge(0)] | None = None
+    """The lane into which it moves, among the edge's lanes for cars, 0 nearest the kerb."""
+    over_s: Annotated[float, Ge(0)] = 0.0
+    """How long the change takes; that of a lane is made at once all the same, and ended by then."""
+    over_m: Annotated[float, Ge(0)] = 0.0
+    """How far it drives meanwhile, instead."""
+    rate: Annotated[float, Ge(0)] = 0.0
+    """Change of speed in m/s2, instead."""
+    alone: bool = False
+    """Whether it ends what the vehicle is still at."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,6 +262,8 @@ class ScriptedVehicle(Incident):
     """A vehicle on a route of its own, which acts at given times."""
 
     kind: Literal["vehicle"] = "vehicle"
+    name: str = ""
+    """What conditions and other vehicles' actions call it."""
     route: Annotated[tuple[EdgeId, ...], MinLen(1)]
     """Its edges, in driving order, each leading to the next."""
     position_m: Annotated[float, Ge(0)] = 0.0
@@ -201,6 +272,10 @@ class ScriptedVehicle(Incident):
     """Among the edge's lanes for cars, 0 nearest the kerb."""
     speed_kmh: Annotated[float, Ge(0)] = 50.0
     """The speed that it keeps at first, as far as traffic allows."""
+    length_m: Annotated[float, Gt(0)] = 5.0
+    """Its length."""
+    keeps_lane: bool = False
+    """Whether it changes the lane only when told or to follow its route, after its last action too."""
     actions: tuple[VehicleAction, ...] = ()
     """In the order of the times; until the last, it changes the lane only when told."""
 

@@ -7,9 +7,9 @@
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
     road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
 
-``run`` adds a film and a page, and the whole state to each line of its steps. In the folder of an evaluation
-(``run.store``), trials whose pictures are kept have theirs in ``pictures/ID``; in that of a study, drives that are
-watched have theirs in ``live/ID``, with neither ``trial.json`` nor screenshots.
+``run`` adds a film and a page, and the whole state to each line of its steps; a pair is a folder with both. In the
+folder of an evaluation (``run.store``), trials whose pictures are kept have theirs in ``pictures/ID``; in that of a
+study, drives that are watched have theirs in ``live/ID``, with neither ``trial.json`` nor screenshots.
 """
 
 from __future__ import annotations
@@ -24,9 +24,13 @@ FILM = "episode.webp"
 PAGE = "summary.html"
 OF_A_TRIAL = (TRIAL, STEPS, SCREENSHOTS, ROAD, FILM, PAGE)
 
+PAIR = ("with_place", "without_place")
+"""The folders of the two runs of ``run --pair``."""
 TRACES = "traces"
 PICTURES = "pictures"
 LIVE = "live"
+WATCHED = "watched"
+"""A file in ``LIVE`` that is locked while somebody watches."""
 
 
 def screenshot(folder: Path, step: int) -> Path:

@@ -65,6 +65,12 @@ class Trip:
     """Edges on the way, in driving order."""
     about: str = ""
     """A description for human readers."""
+    from_m: Annotated[float, Ge(0)] | None = None
+    """Where the front bumper is at first, from the start of ``from_edge``; without it, near its start."""
+    from_lane: Annotated[int, Ge(0)] = 0
+    """With ``from_m``: among the lanes for cars, 0 nearest the kerb."""
+    from_kmh: Annotated[float, Ge(0)] = 0.0
+    """With ``from_m``: the speed at first, at most the limit."""
 
 
 @dataclass(frozen=True, slots=True)

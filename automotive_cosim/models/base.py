@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import ceil
 from typing import Any, Protocol
 
@@ -119,6 +119,31 @@ def digest(messages: Sequence[ChatMessage]) -> str:
         for message in messages
     ]
     return hashlib.sha256(json.dumps(told).encode()).hexdigest()
+
+
+IN_PER_S, OUT_PER_S = 1_000_000, 10_000
+"""Tokens that nobody's models read and write more of in a second."""
+DEAREST_USD = 1e-3
+"""What no token costs more than."""
+
+
+def believed(reply: ModelReply, seconds: float) -> ModelReply:
+    """A reply with as many tokens and dollars as whoever tells them can have used, and no more.
+
+    Args:
+        reply: as the other side tells it.
+        seconds: that passed here.
+    """
+    most_in, most_out = (int(rate * (1.0 + seconds)) for rate in (IN_PER_S, OUT_PER_S))
+    tokens_in, tokens_out = min(reply.tokens_in, most_in), min(reply.tokens_out, most_out)
+    return replace(
+        reply,
+        tokens_in=tokens_in,
+        tokens_out=tokens_out,
+        tokens_reasoning=min(reply.tokens_reasoning, tokens_out),
+        tokens_cached=min(reply.tokens_cached, tokens_in),
+        cost_usd=min(reply.cost_usd, DEAREST_USD * (tokens_in + tokens_out)),
+    )
 
 
 def estimated_tokens(*texts: str) -> int:

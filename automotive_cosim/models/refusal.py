@@ -13,9 +13,14 @@ import time
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from email.utils import mktime_tz, parsedate_tz
+from itertools import islice
 
 LONGEST_REASON = 300
 """Characters of a reason."""
+MOST_REASONS = 20
+"""Looked at, as many as anybody gives."""
+LONGEST_TOLD = 20_000
+"""Characters of a text that are looked at: what looks for markup and pauses takes longer than the text is long."""
 REASONS = (
     "title", "error", "errors", "faultstring", "fault", "message", "msg", "detail", "description",
     "error_description", "error_message", "raw", "metadata",
@@ -39,12 +44,14 @@ def told(body: bytes) -> object:
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
-        return _MARKUP.sub(" ", text) if text.startswith("<") else text
+        short = text[:LONGEST_TOLD]
+        return _MARKUP.sub(" ", short) if text.startswith("<") else short
 
 
 def reason(body: object) -> str:
     """Why it refuses, on one line; empty if it says nothing."""
-    found = dict.fromkeys(" ".join(text.split()) for text in _reasons(body))
+    texts = islice(_reasons(body), MOST_REASONS)
+    found = dict.fromkeys(" ".join(text[:LONGEST_TOLD].split()) for text in texts)
     return "; ".join(text for text in found if text and not any(text in other for other in found if other != text))
 
 
@@ -109,10 +116,10 @@ def _seconds(value: object, unit_s: float, now: str = "") -> float | None:
         return max(0.0, pause) if pause < float("inf") else None  # no comparison holds for NaN
     except (ValueError, OverflowError):
         pass
-    text = str(value)
+    text = str(value)[:LONGEST_REASON]
     if re.fullmatch(rf"\s*(?:{_AMOUNT}\s*)+", text, re.IGNORECASE):
         return _length(text)
-    at, since = _at(text), _at(now)
+    at, since = _at(text), _at(now[:LONGEST_REASON])
     return None if at is None else max(0.0, at - (time.time() if since is None else since))
 
 

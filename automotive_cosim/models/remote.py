@@ -7,23 +7,24 @@ log or record: every text about an endpoint passes ``_Endpoint.clean``.
 from __future__ import annotations
 
 import asyncio
-import base64
 import json
 import os
 import re
 import ssl
 import time
+import zlib
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import NoneType
 from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
-from urllib.parse import parse_qsl, quote
+from urllib.parse import parse_qsl
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError, install_hint
+from automotive_cosim.formats.keys import hidden
 from automotive_cosim.models.apis import Chat, ProviderApi
-from automotive_cosim.models.base import ChatMessage, ModelReply
+from automotive_cosim.models.base import ChatMessage, ModelReply, believed
 from automotive_cosim.models.refusal import LONGEST_REASON, pause_asked_s, reason, told
 from automotive_cosim.models.turns import LocalTurns, Turns
 
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 BODY_LIMIT_BYTES = 4_000_000
 """Longest body to read; an answer of a few thousand tokens has some tens of kilobytes."""
+HIDDEN_TOKENS = 10_000
+"""Of a provider's own instructions, beyond those of a question, which has one in several bytes."""
 LONGEST_FINISH = 40
 """Characters of the reason why an answer ends."""
 FIRST_PAUSE_S = 0.5
@@ -41,8 +44,6 @@ SHORTEST_ASKED_PAUSE_S, LONGEST_ASKED_PAUSE_S = 1.0, 600.0
 """A server that says when to come back has not failed, and its pauses use up no attempt, until they are longer than
 this together, as at the end of a day's quota."""
 OPENAI_URL = "https://api.openai.com/v1"
-SHORTEST_KEY = 12
-"""A shorter key is no secret but a dummy for a local server, and may occur in any answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,28 +146,13 @@ class _Endpoint:
     key: str = field(repr=False)
 
     def clean(self, text: str) -> str:
-        """The text without the key, wherever it came from, as it is or encoded."""
-        for form in forms(self.key) if len(self.key) >= SHORTEST_KEY else ():
-            text = text.replace(form, "***")
-        return text
+        """The text without the key, wherever it came from and however it is spelled."""
+        return hidden(text, self.key)
 
     def url(self, path: str) -> str:
         """The address of a request; a query of the endpoint's own stays at its end."""
         base, mark, query = (self.base_url or OPENAI_URL).partition("?")
         return f"{base.rstrip('/')}{path}{mark}{query}"
-
-
-@cache
-def forms(key: str) -> tuple[str, ...]:
-    """How a key may be written: as it is, in base64 at any place of a longer text, in hexadecimal, in a URL, in
-    JSON, backwards."""
-    data = key.encode()
-    found = [key, data.hex(), data.hex().upper(), quote(key, safe=""), json.dumps(key)[1:-1], key[::-1]]
-    for before in range(3):
-        whole = base64.b64encode(b"\0" * before + data).decode()
-        sure = whole[-(-before * 8 // 6) : (before + len(data)) * 8 // 6]  # what only the key determines
-        found += [sure, sure.translate(str.maketrans("+/", "-_"))]
-    return tuple(dict.fromkeys(found))
 
 
 class _PassingError(Exception):
@@ -227,6 +213,7 @@ class Remote:
         """
         started_s, queued_s, asked_s = time.monotonic(), 0.0, 0.0
         retries, failed = self._settings.retries, 0
+        longest_s = LONGEST_ASKED_PAUSE_S + (retries + 1) * self._settings.timeout_s
         while True:
             queued_s += self._take_turn()
             try:
@@ -234,7 +221,8 @@ class Remote:
                 return replace(reply, seconds=max(0.0, time.monotonic() - started_s - queued_s - asked_s))
             except _PassingError as error:
                 why, pause_s = str(error), error.pause_s or 0.0
-            is_told = pause_s >= SHORTEST_ASKED_PAUSE_S and retries > 0
+            is_late = time.monotonic() - started_s - queued_s > longest_s
+            is_told = pause_s >= SHORTEST_ASKED_PAUSE_S and retries > 0 and not is_late
             if is_told and asked_s + pause_s > LONGEST_ASKED_PAUSE_S:
                 raise self._error(f"is busy: {why}; it asks for a pause of {asked_s + pause_s:,.0f} s")
             failed += not is_told
@@ -259,7 +247,9 @@ class Remote:
         import httpx2
 
         try:
-            status, headers, body = _in_a_loop(lambda: self._post(messages))
+            asked_s = time.monotonic()
+            status, headers, body, asked_bytes = _in_a_loop(lambda: self._post(messages))
+            took_s = time.monotonic() - asked_s
         except TimeoutError:
             raise _PassingError(f"the answer took over {self._settings.timeout_s:g} s") from None
         except (httpx2.HTTPError, httpx2.StreamError, OSError) as error:
@@ -267,7 +257,9 @@ class Remote:
         except (httpx2.InvalidURL, UnicodeError) as error:  # of the address, or in the key
             raise self._error(f"cannot be asked: {type(error).__name__}: {error}") from None
         if 200 <= status < 300:
-            return self._read(body, headers)
+            reply = self._read(body, headers)
+            reply = replace(reply, tokens_in=min(reply.tokens_in, asked_bytes + HIDDEN_TOKENS))
+            return self._priced(believed(reply, took_s))
         said = told(body)
         why = self._endpoint.clean(reason(said))[:LONGEST_REASON]
         why = f"status {status}: {why}" if why else f"status {status}"
@@ -278,10 +270,11 @@ class Remote:
             why += f"; it sends to {where}, and nothing is sent on: if that is right, make it the address"
         raise self._error(f"refused: {why}")
 
-    async def _post(self, messages: Sequence[ChatMessage]) -> tuple[int, Mapping[str, str], bytes]:
-        """Status, headers by names in small letters, and body of the answer.
+    async def _post(self, messages: Sequence[ChatMessage]) -> tuple[int, Mapping[str, str], bytes, int]:
+        """Status, headers by names in small letters, and body of the answer; the bytes of the question.
 
-        The time limit holds from the connection to the last byte, whatever comes; so does that of size.
+        The time limit holds from the connection to the last byte, whatever comes; so does that of size, of what
+        comes and of what that unpacks to.
 
         Raises:
             TimeoutError: it took longer.
@@ -294,7 +287,12 @@ class Remote:
         limits = {name: value for name, value in wanted.items() if value is not None}
         question = json.dumps(self._api.body(self._model, messages, limits)).encode()
         own = self._api.headers(key) or {"Authorization": f"Bearer {key}"}
-        sent = {"Content-Type": "application/json", "Accept": "application/json", **own}
+        sent = {
+            "Content-Type": "application/json",
+            "Accept": "application/json",
+            "Accept-Encoding": "identity",
+            **own,
+        }
         verify = _certificates() if self._endpoint.url("").startswith("https") else False
         async with (
             asyncio.timeout(settings.timeout_s),
@@ -304,12 +302,14 @@ class Remote:
                 "POST", self._endpoint.url(self._api.path(self._model)), content=question, headers=sent
             ) as response,
         ):
-            body = b""
-            async for piece in response.aiter_bytes():
+            body = bytearray()
+            async for piece in response.aiter_raw():
                 body += piece
                 if len(body) > BODY_LIMIT_BYTES:
                     raise _PassingError(f"the answer has over {BODY_LIMIT_BYTES} bytes")
-            return response.status_code, {name.lower(): value for name, value in response.headers.items()}, body
+            headers = {name.lower(): value for name, value in response.headers.items()}
+            content = _unpacked(bytes(body), headers.get("content-encoding", ""))
+            return response.status_code, headers, content, len(question)
 
     def _read(self, body: bytes, headers: Mapping[str, str]) -> ModelReply:
         try:
@@ -318,18 +318,41 @@ class Remote:
             shown = self._endpoint.clean(body.decode(errors="replace"))[:80]  # cut first, half a key would pass
             wrong = f"the answer is not one of its protocol: {shown!r}"
             raise _PassingError(wrong, pause_asked_s(headers, told(body))) from None
-        settings = self._settings
-        in_usd, cached_usd = settings.usd_per_million_in, settings.usd_per_million_cached
-        dollars = (reply.tokens_in - reply.tokens_cached) * in_usd
-        dollars += reply.tokens_cached * (in_usd if cached_usd is None else cached_usd)
-        dollars += reply.tokens_out * settings.usd_per_million_out
         # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
         text, finish, reasoning = (
             self._endpoint.clean(each).encode("utf-8", "replace").decode()
             for each in (reply.text, reply.finish, reply.reasoning)
         )
         finish = finish[:LONGEST_FINISH]
-        return replace(reply, text=text, finish=finish, reasoning=reasoning, cost_usd=dollars / 1e6)
+        return replace(reply, text=text, finish=finish, reasoning=reasoning)
+
+    def _priced(self, reply: ModelReply) -> ModelReply:
+        settings = self._settings
+        in_usd, cached_usd = settings.usd_per_million_in, settings.usd_per_million_cached
+        dollars = (reply.tokens_in - reply.tokens_cached) * in_usd
+        dollars += reply.tokens_cached * (in_usd if cached_usd is None else cached_usd)
+        dollars += reply.tokens_out * settings.usd_per_million_out
+        return replace(reply, cost_usd=dollars / 1e6)
+
+
+def _unpacked(body: bytes, encoding: str) -> bytes:
+    """The body as it was before some servers packed it, although nobody asked for that.
+
+    Raises:
+        _PassingError: it is packed in another way, damaged, or longer than what is read.
+    """
+    packed = encoding.strip().lower()
+    if packed in ("", "identity"):
+        return body
+    if packed not in ("gzip", "x-gzip", "deflate"):
+        raise _PassingError(f"the answer is packed by {packed[:LONGEST_FINISH]!r}, and nobody asked for that")
+    try:
+        content = zlib.decompressobj(wbits=zlib.MAX_WBITS | 32).decompress(body, BODY_LIMIT_BYTES + 1)
+    except zlib.error as error:
+        raise _PassingError(f"the answer is damaged: {error}") from None
+    if len(content) > BODY_LIMIT_BYTES:
+        raise _PassingError(f"the answer has over {BODY_LIMIT_BYTES} bytes")
+    return content
 
 
 T = TypeVar("T")

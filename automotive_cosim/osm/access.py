@@ -43,14 +43,21 @@ CLOSED = frozenset(
 HOV_ONLY = frozenset(("designated", "only", "2", "2+", "3", "3+"))
 """Values of ``hov`` of what a driver alone may not use (OSM wiki, "Key:hov"; numbers are its older form)."""
 
+GONE = ("abandoned", "demolished", "destroyed", "disused", "planned", "proposed", "razed", "removed")
+"""Keys about what is no road any more, or not yet (OSM wiki, "Lifecycle prefix")."""
+
 TOLD = frozenset(
-    ("4wd_only=yes", "4wd_only=recommended", "abandoned=yes", "construction=yes", "construction=minor",
-     "construction=widening", "disused=yes", "hov=lane", "ice_road=yes", "impassable=yes", "low_emission_zone=yes",
+    (*(f"{key}=yes" for key in GONE), "4wd_only=yes", "4wd_only=recommended", "construction=yes",
+     "construction=minor", "construction=widening", "hov=lane", "ice_road=yes", "impassable=yes",
+     "low_emission_zone=yes",
      "seasonal=yes", "seasonal=winter", "seasonal=summer", "seasonal=spring", "seasonal=autumn",
      "seasonal=wet_season", "seasonal=dry_season", "toll=yes", "toll:motor_vehicle=yes", "toll:motorcar=yes",
      "winter_road=yes")
 )  # fmt: skip
 """Tags of roads that are open to cars at a price, or not to every car, or not always, which are told."""
+
+TOO_SMALL = {"maxheight": 1.9, "maxwidth": 2.0, "maxlength": 5.0, "maxweight": 2.5}
+"""Limits of size, metres and tonnes, below which not every car passes (OSM wiki, "Key:maxwidth", ...)."""
 
 DOUBTED = frozenset(("unknown", "discouraged", "variable"))
 """Values that let a car in and are told all the same."""
@@ -154,11 +161,24 @@ def doubts(tags: Mapping[str, str]) -> Iterator[str]:
         if found.is_doubtful:
             yield found.tag
     yield from _conditional(tags)
+    yield from small(tags)
     for key, value in tags.items():
+        if key.startswith("hov") and not key.endswith((":conditional", ":minimum")):
+            words = {word.strip() for word in value.split("|")}
+            if not words <= HOV_ONLY | {"yes", "no", "lane", "", "none"} or (":lanes" in key and "lane" in words):
+                yield f"{key}={value}"
         is_timed = key.startswith("hov") and key.endswith(":conditional")
         is_unread = is_timed and not all(is_understood(when) for _, when, _ in clauses(value))
         if f"{key}={value}" in TOLD or is_unread or (is_timed and ":lanes" in key):
             yield f"{key}={value}"
+
+
+def small(tags: Mapping[str, str]) -> Iterator[str]:
+    """The tags by which a road, or a barrier, is too low, narrow, short or weak for some cars."""
+    for key, least in TOO_SMALL.items():
+        number = re.fullmatch(r"(\d+(?:\.\d+)?) ?[mt]?", tags.get(key, ""))
+        if number and float(number[1]) < least:
+            yield f"{key}={tags[key]}"
 
 
 def _conditional(tags: Mapping[str, str]) -> Iterator[str]:

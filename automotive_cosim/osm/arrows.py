@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.osm.access import ENDS
@@ -102,7 +103,13 @@ def leads_there(lanes: LaneArrows, built: BuiltLanes) -> bool:
         return False
     pairs = list(zip(lanes, built, strict=False))
     by_angle = all(_fits(arrows, [letter for letter, _ in links]) for arrows, links in pairs)
-    return by_angle or _in_order(pairs, built)
+    return (by_angle and _apart(pairs)) or _in_order(pairs, built)
+
+
+def _apart(pairs: Sequence[tuple[frozenset[str], Sequence[tuple[str, str]]]]) -> bool:
+    """Whether no two lanes whose arrows all differ lead to the same roads."""
+    said = [(arrows, {onto for _, onto in links}) for arrows, links in pairs if arrows and arrows <= TURNS.keys()]
+    return not any(here == there and not one & other for (one, here), (other, there) in combinations(said, 2))
 
 
 def _in_order(pairs: Sequence[tuple[frozenset[str], Sequence[tuple[str, str]]]], built: BuiltLanes) -> bool:

@@ -6,12 +6,13 @@ is cut there: each side ends at a node of its own. Where one direction only is c
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from automotive_cosim.osm.access import ENDS, KEYS, access
+from automotive_cosim.osm.access import ENDS, KEYS, access, small
 from automotive_cosim.osm.extract import Extract, OsmWay, Position
 from automotive_cosim.osm.facing import away_m
 from automotive_cosim.osm.oneway import BOTH, VALUES
@@ -105,6 +106,15 @@ def _stops(tags: Mapping[str, str], end: str) -> str | None:
 def is_unclear_gate(tags: Mapping[str, str]) -> bool:
     """Whether a node is a gate without a word about who passes."""
     return tags.get("barrier", "").lower() in GATES and not any(tags.get(key) for key in KEYS)
+
+
+def doubts(tags: Mapping[str, str]) -> Iterator[str]:
+    """The tags of a barrier that a network cannot follow: conditions, and limits of size."""
+    yield from (f"{key}={value}" for key, value in tags.items() if _TIMED.match(key))
+    yield from small(tags)
+
+
+_TIMED = re.compile(rf"({'|'.join(KEYS)}|oneway).*:conditional$")
 
 
 def cut(extract: Extract) -> Cut:

@@ -83,7 +83,7 @@ def _watched(
     both = [each for each in near if each[0].edge_id in pair]
     if near[0][1].distance(point) < ON_ROAD_M:
         near = both
-    told = facing(camera.tags)
+    told = facing(camera.tags, "camera")
     courses = [bearing_deg(*course) for course in camera.courses]
     if courses or told.front_deg is not None:
         chosen: dict[str, tuple[Edge, shapely.LineString]] = {}

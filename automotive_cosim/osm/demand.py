@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.osm.network import Built, entries, exits
 from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.sumo_programs import first_error, run
@@ -126,7 +127,7 @@ def write(journeys: Sequence[Journey], target: Path) -> None:
         for number, journey in enumerate(journeys)
     )
     text = "\n".join(("<routes>", f"    {CAR}", *rows, "</routes>", ""))
-    target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
+    write_whole(target, gzip.compress(text.encode(), compresslevel=9, mtime=0))
 
 
 def _ends(start: Edge, goal: Edge) -> str:
@@ -228,7 +229,7 @@ def fastest_ways(
     """
     asked, routed = scratch / "asked.trips.xml", scratch / "routed.rou.xml"
     rows = (f'<trip id="{number}" depart="0" {_ends(*pair)}/>' for number, pair in enumerate(ends))
-    asked.write_text("\n".join(("<routes>", *rows, "</routes>")), encoding="utf-8")
+    write_whole(asked, "\n".join(("<routes>", *rows, "</routes>")))
     ok, printed = run(
         "duarouter",
         (

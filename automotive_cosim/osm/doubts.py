@@ -11,11 +11,19 @@ from automotive_cosim.osm.extract import Extract, OsmWay
 from automotive_cosim.osm.facing import facing
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
+from automotive_cosim.osm.signs import PRIORITY_ROAD, kind_of
+from automotive_cosim.osm.unread import unread
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import clauses, names_holidays, timed_limits
 
 SHOWN = 10
 """How many OSM numbers a line names where people read it; ``import.json`` has all."""
+
+OF_SIGNS = re.compile(r"stop|give_way|yield|maxspeed|DE:20[56]|FR:AB[34]|US:R1-[12]|GB:60[12]")
+"""Signs of right of way and limits that a node has as ``traffic_sign`` alone, in words or some lands' numbers."""
+
+NOT_BUILT = {"traffic_calming", "priority"}
+"""Keys of what stands at a road and SUMO does not have: humps, and narrow places where one direction goes first."""
 
 _MANY = re.compile(rf"((?:-?\d+, ){{{SHOWN - 1}}}-?\d+)((?:, -?\d+)+)$")
 
@@ -43,12 +51,15 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         shut = {way.way_id for way in extract.closed}
         what = "closed to cars" if set(ways) <= shut else "open to cars" if not shut & set(ways) else "read by way"
         yield f"access that is doubtful, {what}: {tag}: {in_words('way', ways)}"
-    if extract.low_emission:
-        yield f"low-emission zones, taken as open to any car: {in_words('relation', extract.low_emission)}"
+    for what, relations in sorted(extract.told.items()):
+        yield f"{what}: {in_words('relation', relations)}"
     for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in oneway.doubts(way.tags)):
         yield f"direction that is doubtful: {tag}: {in_words('way', ways)}"
-    yield from _of_barriers(built.cut)
+    yield from _of_barriers(extract, built.cut)
     yield from _of_turns(built)
+    if extract.other_classes:
+        by_class = ", ".join(f"{count} {name}" for name, count in sorted(extract.other_classes.items()))
+        yield f"ways of the extract that are left out for their class: {by_class}"
     for (why, kind), nodes in _of_signs(extract, built):
         yield f"{kind.replace('_', '-')} signs {why}, left out: {in_words('node', nodes)}"
     for tag, nodes in sorted(_not_built(extract, built).items()):
@@ -57,13 +68,19 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         yield f"speed cameras {what}: {in_words('node', nodes)}"
     for tag, ways in _by_tag(_of_arrows(extract, roads, built)):
         yield f"turn arrows not followed, the lanes lead by angle: {tag}: {in_words('way', ways)}"
+    for kind in ("stop", "give_way"):
+        if nodes := [ref for ref, node in sorted(extract.beside.items()) if node.tags["highway"] == kind]:
+            yield f"{kind.replace('_', '-')} signs on no road for cars, left out: {in_words('node', nodes)}"
+    if yielding := sorted(set(built.signs.yielding)):
+        yield f"priority roads whose cars yield where netconvert decides so: {in_words('way', yielding)}"
+    for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in _of_priority(way.tags)):
+        yield f"priority roads, left out: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag((way, f"stop={way.tags['stop']}") for way in extract.ways if "stop" in way.tags):
         yield f"stop signs on a whole way, left out: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag(
         (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, roads[way.way_id].directions)
     ):
-        done = "a lane each was built" if tag == lanes.SHARED else "left out"
-        yield f"{tag}, {done}: {in_words('way', ways)}"
+        yield f"{tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag(
         (way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, roads[way.way_id].country)
     ):
@@ -71,6 +88,8 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         yield f"{about}: {in_words('way', ways)}"
     for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in _of_lane_limits(way, roads)):
         yield f"limits of lanes of another number, the highest if all have one: {tag}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in unread(way.tags)):
+        yield f"tags that are not read, left out: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag((way, tag) for way in everywhere for tag in _of_holidays(way.tags)):
         yield f"holidays, of which there is no calendar, taken for other days: {tag}: {in_words('way', ways)}"
     for part, ways in _by_tag((way, part) for way in extract.ways for part in _unread(way.tags)):
@@ -100,6 +119,12 @@ def _unread(tags: Mapping[str, str]) -> Iterator[str]:
                 yield part
 
 
+def _of_priority(tags: Mapping[str, str]) -> Iterator[str]:
+    for key, value in tags.items():
+        if key.startswith("priority_road") and value not in PRIORITY_ROAD:
+            yield f"{key}={value}"
+
+
 def _by_tag(found: Iterable[tuple[OsmWay, str]]) -> list[tuple[str, list[int]]]:
     ways: dict[str, dict[int, None]] = {}
     for way, tag in found:
@@ -107,7 +132,7 @@ def _by_tag(found: Iterable[tuple[OsmWay, str]]) -> list[tuple[str, list[int]]]:
     return sorted((tag, list(numbers)) for tag, numbers in ways.items())
 
 
-def _of_barriers(cut: barriers.Cut) -> Iterator[str]:
+def _of_barriers(extract: Extract, cut: barriers.Cut) -> Iterator[str]:
     for found, about in (
         (cut.stopping, "barriers that cars cannot pass"),
         (cut.gates, "gates of which the map does not say for whom they open, passed"),
@@ -118,6 +143,12 @@ def _of_barriers(cut: barriers.Cut) -> Iterator[str]:
             tags.setdefault(barrier.tag, []).append(barrier.node)
         for tag, nodes in sorted(tags.items()):
             yield f"{about}: {tag}: {in_words('node', nodes)}"
+    further: dict[str, list[int]] = {}
+    for ref, node in extract.nodes.items():
+        for tag in barriers.doubts(node.tags) if "barrier" in node.tags else ():
+            further.setdefault(tag, []).append(ref)
+    for tag, nodes in sorted(further.items()):
+        yield f"tags of barriers that are not followed: {tag}: {in_words('node', nodes)}"
 
 
 def _of_turns(built: Built) -> Iterator[str]:
@@ -135,7 +166,7 @@ def _of_signs(extract: Extract, built: Built) -> list[tuple[tuple[str, str], lis
     found: dict[tuple[str, str], set[int]] = {}
     for why, nodes in built.signs.left_out.items():
         for ref in nodes:
-            found.setdefault((why, extract.nodes[ref].tags["highway"]), set()).add(ref)
+            found.setdefault((why, kind_of(extract.nodes[ref].tags)), set()).add(ref)
     return sorted((about, sorted(nodes)) for about, nodes in found.items())
 
 
@@ -178,9 +209,12 @@ def _not_built(extract: Extract, built: Built) -> dict[str, list[int]]:
     """What stands at the road and SUMO does not have: calming, and signals at no junction."""
     found: dict[str, list[int]] = {"signals at no junction with signals, left out": sorted(built.dark)}
     for ref, node in extract.nodes.items():
-        calming = node.tags.get("traffic_calming", "no")
-        if calming != "no":
-            found.setdefault(f"traffic calming that SUMO does not have: traffic_calming={calming}", []).append(ref)
+        for key in sorted(NOT_BUILT & node.tags.keys()):
+            if node.tags[key] != "no":
+                found.setdefault(f"traffic calming that SUMO does not have: {key}={node.tags[key]}", []).append(ref)
+        sign = node.tags.get("traffic_sign", "")
+        if OF_SIGNS.search(sign) and not kind_of(node.tags):
+            found.setdefault(f"signs as traffic_sign={sign}, left out", []).append(ref)
         if node.tags.get("highway") == "traffic_signals":
             told = facing(node.tags, "traffic_signals")
             if told.unread:

@@ -19,7 +19,7 @@ FOR_CARS = re.compile(r"yes|true|1|permissive|designated|destination|customers|p
 ONE_WAY = {"yes": 1, "true": 1, "1": 1, "reversible": 1, "-1": -1, "reverse": -1}
 TWO_WAY = ("no", "false", "0", "alternating")
 
-SPEED = re.compile(r"([0-9]+(?:\.[0-9]+)?) *(mph|MPH|[kK][mM]?(?:/?[hH]|[pP][hH]))?")
+SPEED = re.compile(r"([0-9]+(?:\.[0-9]+)?) *(mph|MPH|knots|[kK][mM]?(?:/?[hH]|[pP][hH]))?")
 MILE_KM = 1.609344
 
 OPENING = ("gate", "lift_gate", "swing_gate", "sliding_gate", "sliding_beam", "hampshire_gate", "gates",
@@ -275,7 +275,11 @@ def _kmh(value: str) -> float | None:
     if value == "walk":
         return 7.0
     found = [SPEED.fullmatch(part.strip()) for part in value.split(";")]
-    all_kmh = [_within(float(m[1]), is_mph=(m[2] or "").lower() == "mph") for m in found if m]
+    all_kmh = [
+        _within(float(m[1]) * (1.852 if m[2] == "knots" else 1), is_mph=(m[2] or "").lower() == "mph")
+        for m in found
+        if m
+    ]
     return min((kmh for kmh in all_kmh if kmh is not None), default=None)
 
 

@@ -6,9 +6,11 @@ ways (paths, railways) are removed, because each path that meets a road would sp
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import tempfile
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -19,7 +21,10 @@ from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_utf8, open_file, opened
+from automotive_cosim.formats.limited import read_limited
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
@@ -36,6 +41,13 @@ ROAD_CLASSES = frozenset(
     (*LINKED, *(f"{road}_link" for road in LINKED), "unclassified", "residential", "living_street")
 )
 """OSM highway values to keep. Service roads are left out: SUMO's type map opens them to deliveries only."""
+
+MAYBE_ROADS = frozenset(("service", "track", "road", "pedestrian", "busway", "bus_guideway", "escape", "raceway"))
+"""Further OSM highway values of which cars may use some."""
+
+CAMERA = "speed_camera"
+TAGGED = (CAMERA, "stop", "give_way")
+"""OSM highway values of what may also stand beside the road."""
 
 POSITION = re.compile(r"-?\d{1,3}(\.\d*)?([eE]-?\d{1,2})?")
 """A latitude or longitude as OpenStreetMap writes it."""
@@ -110,8 +122,12 @@ class Extract:
     """Water, green and buildings, wherever in the extract."""
     closed: tuple[OsmWay, ...] = ()
     """Roads that cars may not drive in any direction."""
-    low_emission: tuple[int, ...] = ()
-    """Relations of low-emission zones."""
+    told: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    """Relations that are only listed, by their kind (``TOLD_RELATIONS``)."""
+    beside: Mapping[int, Node] = field(default_factory=dict)
+    """Stop and give-way signs on no road for cars."""
+    other_classes: Mapping[str, int] = field(default_factory=dict)
+    """How many roads were left out for their class, by the class (``MAYBE_ROADS``)."""
     other_side: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     """Ways that were left out, all or in part, because traffic keeps the other side there, by country."""
 
@@ -127,7 +143,11 @@ class Extract:
             raise ImportMapError(
                 f"no road in the --bbox; the map reaches from {west:.4f},{south:.4f} to {east:.4f},{north:.4f}"
             )
-        return replace(part, cameras=tuple(camera for camera in self.cameras if area.holds(*camera.position)))
+        return replace(
+            part,
+            cameras=tuple(camera for camera in self.cameras if area.holds(*camera.position)),
+            beside={ref: node for ref, node in self.beside.items() if area.holds(*node.position)},
+        )
 
     def part(self, nodes: Mapping[int, Node]) -> Extract:
         """The part with these nodes alone; of a road that leaves it and comes back, the longest stretch."""
@@ -169,7 +189,15 @@ def read(source: Path) -> Extract:
         ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
-    ways, relations, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
+    if not is_json(_head(source)):
+        _osmium()
+    return read_limited(_read, source, bounds.MAP, ImportMapError)
+
+
+def _read(source: Path) -> Extract:
+    """Runs in a process with limits: how much an extract unpacks to, only its readers know."""
+    os.environ["OSMIUM_POOL_THREADS"] = "2"  # each of as many as there are cores would reserve memory
+    ways, relations, nodes, tagged, areas, others = (_read_json if is_json(_head(source)) else _read_osm)(source)
     ways.sort(key=lambda way: way.way_id)
     complete = [piece for way in ways for piece in _known_pieces(way, nodes)]
     is_open = [any(directions(way.tags)) for way in complete]
@@ -180,6 +208,11 @@ def read(source: Path) -> Extract:
             " give an extract that keeps highway=* ways and their nodes"
         )
     used = {ref for way in opened for ref in way.nodes}
+    cameras = {ref: node for ref, node in tagged.items() if node.tags["highway"] == CAMERA}
+    told: dict[str, tuple[int, ...]] = {}
+    for relation in sorted(relations, key=lambda relation: relation.relation_id):
+        if kind := _told_kind(relation.tags):
+            told[kind] = (*told.get(kind, ()), relation.relation_id)
     return Extract(
         opened,
         {ref: node for ref, node in sorted(nodes.items()) if ref in used},
@@ -187,7 +220,9 @@ def read(source: Path) -> Extract:
         tuple(_watching(cameras, relations, nodes, {way.way_id: way for way in ways})),
         ground.in_order(areas),
         tuple(way for way, there in zip(complete, is_open, strict=True) if not there),
-        tuple(sorted(relation.relation_id for relation in relations if _is_low_emission(relation))),
+        told,
+        {ref: node for ref, node in tagged.items() if ref not in used and ref not in cameras},
+        others,
     )
 
 
@@ -222,11 +257,13 @@ def _watching(
 LIMITS_ENFORCED = frozenset(("maxspeed", "average_speed"))
 """Values of ``enforcement`` that are about speed (OSM wiki, "Relation:enforcement")."""
 
-_Read = tuple[list[OsmWay], tuple[Relation, ...], dict[int, Node], dict[int, Node], tuple[MappedArea, ...]]
-"""Ways open to cars, relations, the nodes of both, speed cameras, and the ground."""
+_Nodes = dict[int, Node]
+_Parts = tuple[list[OsmWay], tuple[Relation, ...], _Nodes, _Nodes, tuple[MappedArea, ...], Mapping[str, int]]
+"""Ways open to cars, relations, the nodes of both, those with a ``TAGGED`` thing, the ground, and how many ways of
+other classes there are."""
 
 
-def _read_osm(source: Path) -> _Read:
+def _read_osm(source: Path) -> _Parts:
     kind = _format(source, _head(source))
     deleted, version = _checked(source) if kind != "pbf" else (set[tuple[str, int]](), "")
     osmium = _osmium()
@@ -253,7 +290,7 @@ OLD_VERSIONS = ("1", "1.0")
 
 def _as_new(source: Path, target: Path) -> Path:
     """Writes a file unpacked, and with the present version."""
-    with opened(source) as old, target.open("wb") as new:
+    with opened(source) as old, drafted(target) as new:
         head = old.read(4096)
         new.write(re.sub(rb"""(<osm\b[^>]*?version=["'])1(\.0)?(?=["'])""", rb"\g<1>0.6", head, count=1))
         shutil.copyfileobj(old, new)
@@ -264,7 +301,7 @@ _UNSORTED = re.compile(r"out of order|twice")
 """What libosmium says of a file whose elements are not sorted, or are there twice."""
 
 
-def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch: Path) -> _Read:
+def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch: Path) -> _Parts:
     """Reads a file in which elements are in any order, more than once (the newest version counts), or deleted."""
     osmium = _osmium()
     merged = osmium.MergeInputReader()
@@ -285,13 +322,13 @@ def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch
     return _read_file(osmium.io.File(str(scratch / "sorted.osm.pbf"), "pbf"))
 
 
-def _read_file(file: Any) -> _Read:
+def _read_file(file: Any) -> _Parts:
     carried: dict[int, Node] = {}
-    ways, relations = _read_ways(file, carried)
+    ways, relations, others = _read_ways(file, carried)
     nodes = carried | _read_nodes(file, _wanted(ways, relations))
     lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
     areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
-    return ways, relations, nodes, _read_cameras(file), areas
+    return ways, relations, nodes, _read_tagged(file), areas, others
 
 
 def _wanted(ways: Iterable[OsmWay], relations: Iterable[Relation]) -> set[int]:
@@ -300,27 +337,28 @@ def _wanted(ways: Iterable[OsmWay], relations: Iterable[Relation]) -> set[int]:
     return {ref for way in ways for ref in way.nodes} | {ref for kind, ref, _ in members if kind == "n"}
 
 
-def _read_json(source: Path) -> _Read:
+def _read_json(source: Path) -> _Parts:
     read = OverpassJson(source)
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
+    others = Counter(tags["highway"] for _, tags, _ in read.ways() if tags.get("highway") in MAYBE_ROADS)
     relations = tuple(filter(_is_kept, (Relation(*relation) for relation in read.relations())))
     wanted = _wanted(ways, relations)
     outlines = [(kind, refs) for _, tags, refs in read.ways() if (kind := _ground_of(tags, refs)) is not None]
     corners = {ref for _, refs in outlines for ref in refs}
     places: dict[int, Position] = {}
     nodes: dict[int, Node] = {}
-    cameras: dict[int, Node] = {}
+    tagged: dict[int, Node] = {}
     for node_id, tags, place in read.nodes():
         if node_id in corners:
             places[node_id] = Position(*place)
         if node_id in wanted:
             nodes[node_id] = Node(Position(*place), tags)
-        if tags.get("highway") == "speed_camera":
-            cameras[node_id] = Node(Position(*place), tags)
+        if tags.get("highway") in TAGGED:
+            tagged[node_id] = Node(Position(*place), tags)
     areas = (
         MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
     )
-    return ways, relations, dict(sorted(nodes.items())), cameras, tuple(areas)
+    return ways, relations, dict(sorted(nodes.items())), tagged, tuple(areas), others
 
 
 def _ground_of(tags: Mapping[str, str], refs: tuple[int, ...]) -> GroundKind | None:
@@ -420,10 +458,12 @@ def _explain(source: Path, error: str) -> str:
     return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
 
 
-def _read_ways(file: Any, carried: dict[int, Node]) -> tuple[list[OsmWay], tuple[Relation, ...]]:
-    """Roads and relations, and the nodes that ways carry along with their positions (``out geom``)."""
+def _read_ways(file: Any, carried: dict[int, Node]) -> tuple[list[OsmWay], tuple[Relation, ...], Mapping[str, int]]:
+    """Roads and relations, the nodes that ways carry along with their positions (``out geom``), and how many ways
+    of other classes there are."""
     osmium = _osmium()
     ways: list[OsmWay] = []
+    others: Counter[str] = Counter()
     relations: list[Relation] = []
     wanted = osmium.filter.KeyFilter("highway", "type")
     for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(wanted):
@@ -433,18 +473,30 @@ def _read_ways(file: Any, carried: dict[int, Node]) -> tuple[list[OsmWay], tuple
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
                 if item.nodes and item.nodes[0].location.valid():
                     carried |= {node.ref: Node(Position(node.lon, node.lat), {}) for node in item.nodes}
+            elif tags.get("highway") in MAYBE_ROADS:
+                others[tags["highway"]] += 1
         else:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
             relations.append(Relation(item.id, tags, members))
-    return ways, tuple(filter(_is_kept, relations))
+    return ways, tuple(filter(_is_kept, relations)), others
 
 
 def _is_kept(relation: Relation) -> bool:
-    return _is_restriction(relation) or _is_enforcement(relation) or _is_low_emission(relation)
+    return _is_restriction(relation) or _is_enforcement(relation) or _told_kind(relation.tags) != ""
 
 
-def _is_low_emission(relation: Relation) -> bool:
-    return relation.tags.get("boundary") == "low_emission_zone"
+TOLD_RELATIONS = {
+    ("boundary", "low_emission_zone"): "low-emission zones, taken as open to any car",
+    ("boundary", "limited_traffic_zone"): "limited-traffic zones, taken as open to any car",
+    ("type", "connectivity"): "lanes that lead elsewhere than by their arrows, left out",
+    ("type", "stop"): "stop signs as relations, left out",
+    ("type", "give_way"): "give-way signs as relations, left out",
+}
+"""Relations that are only listed, by a tag, and how."""
+
+
+def _told_kind(tags: Mapping[str, str]) -> str:
+    return next((kind for (key, value), kind in TOLD_RELATIONS.items() if tags.get(key) == value), "")
 
 
 def _is_restriction(relation: Relation) -> bool:
@@ -473,9 +525,9 @@ def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:
     return nodes
 
 
-def _read_cameras(file: Any) -> dict[int, Node]:
+def _read_tagged(file: Any) -> dict[int, Node]:
     osmium = _osmium()
-    tagged = osmium.filter.TagFilter(("highway", "speed_camera"))
+    tagged = osmium.filter.TagFilter(*(("highway", value) for value in TAGGED))
     found = osmium.FileProcessor(file, osmium.osm.NODE).with_filter(tagged)
     return {
         node.id: Node(Position(node.location.lon, node.location.lat), {tag.k: tag.v for tag in node.tags})

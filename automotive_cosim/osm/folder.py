@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import secrets
-import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -13,6 +11,8 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.formats import writing
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.scenarios import Sumo, Trip
 
 ATTRIBUTION = "Map data © OpenStreetMap contributors, Open Database License (ODbL) 1.0"
@@ -51,34 +51,11 @@ def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
         raise ImportMapError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
     if out.exists() and not (out / "scenario.toml").is_file():
         raise ImportMapError(f"{out} is not a scenario folder, so it is not replaced; choose another --out")
-    # Named before it is made, so that a signal between the two leaves nothing.
-    scratch = out.absolute().parent / f".{out.name}-{secrets.token_hex(4)}"
     try:
-        scratch.mkdir(mode=0o700)
-        building = scratch / "scenario"
-        building.mkdir()
-        yield building
-        _put_in_place(building, out, scratch / "replaced")
+        with writing.appearing(out, replaces=replaces) as building:
+            yield building
     except OSError as error:
-        done = "written" if scratch.is_dir() else "created"
-        raise ImportMapError(f"{out} cannot be {done} ({error.strerror}); choose another --out") from error
-    finally:
-        try:
-            shutil.rmtree(scratch, ignore_errors=True)
-        finally:  # where a signal interrupted that
-            shutil.rmtree(scratch, ignore_errors=True)
-
-
-def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
-    if not out.exists():
-        building.rename(out)
-        return
-    out.rename(replaced)
-    try:
-        building.rename(out)
-    except BaseException:
-        replaced.rename(out)
-        raise
+        raise ImportMapError(f"{out} cannot be written ({error.strerror}); choose another --out") from error
 
 
 def write_config(
@@ -114,7 +91,7 @@ def write_config(
         lines.append(f"    <{section}>")
         lines += [f'        <{option} value="{value}"/>' for option, value in options.items()]
         lines.append(f"    </{section}>")
-    target.write_text("\n".join([*lines, "</configuration>", ""]), encoding="utf-8")
+    write_whole(target, "\n".join([*lines, "</configuration>", ""]))
 
 
 def write_scenario(
@@ -146,7 +123,7 @@ def write_scenario(
             text += f"\n{block}\n"
         else:
             text += "".join(f"{key} = {toml_value(value)}\n" for key, value in block.items() if value is not None)
-    target.write_text(text, encoding="utf-8")
+    write_whole(target, text)
 
 
 def toml_value(value: object) -> str:
@@ -172,4 +149,4 @@ def write_readme(target: Path, *, title: str, source: str, lines: Sequence[str])
         "and ego trips are in `scenario.toml`; change them as you like.",
         "",
     ]
-    target.write_text("\n".join(text), encoding="utf-8")
+    write_whole(target, "\n".join(text))

@@ -17,6 +17,7 @@ from pyproj import Proj
 from shapely import Polygon
 
 from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork
+from automotive_cosim.formats.writing import write_whole
 
 TAGS: Mapping[GroundKind, Mapping[str, frozenset[str]]] = {
     GroundKind.WATER: {
@@ -145,7 +146,7 @@ def write(areas: Iterable[GroundArea], target: Path) -> None:
         f' layer="{LAYERS[area.kind]}" shape="{_shape(area)}"/>\n'
         for number, area in enumerate(areas)
     )
-    target.write_bytes(gzip.compress(f"<additional>\n{''.join(rows)}</additional>\n".encode(), mtime=0))
+    write_whole(target, gzip.compress(f"<additional>\n{''.join(rows)}</additional>\n".encode(), mtime=0))
 
 
 def _shape(area: GroundArea) -> str:

@@ -110,18 +110,30 @@ def for_netconvert(tags: Mapping[str, str], may: Directions, *, left_hand: bool 
 
 
 def doubts(tags: Mapping[str, str], may: Directions) -> Iterator[str]:
-    """The tags about lanes that are not possible, and a lane that both directions share, which SUMO does not
-    know."""
-    for key in ("lanes", "lanes:forward", "lanes:backward"):
-        if tags.get(key) and _count(tags, key) is None:
-            yield f"{key}={tags[key]}"
-    if may.is_two_way and _count(tags, "lanes") == 1:
+    """The tags about lanes that are not followed, and what was done: impossible or contradictory numbers, a lane
+    that both directions share, which SUMO does not know, and arrows."""
+    said = {key: tags[key] for key in COUNTED if tags.get(key)}
+    for key, value in said.items():
+        if _count(tags, key) is None:
+            yield f"{key}={value}, left out"
+        elif ";" in value:
+            yield f"{key}={value}, the lowest taken"
+        elif key == "lanes:both_ways":
+            yield f"{key}={value}, which SUMO does not have, left out"
+    total, *parts = (_count(tags, key) for key in COUNTED)
+    known = sum(filter(None, parts))
+    unknown = sum(part is None and is_open for part, is_open in zip(parts[:2], may, strict=True))
+    if total and known and (known + unknown > total or (known < total and not unknown and None not in parts[:2])):
+        yield f"{', '.join(f'{key}={value}' for key, value in said.items())}, which do not add up"
+    if may.is_two_way and total == 1:
         yield SHARED
     if any(key.startswith("turn") for key in tags):
-        yield from arrows.doubts(tags, may, built_of(tags, may))
+        yield from (f"{arrow}, left out" for arrow in arrows.doubts(tags, may, built_of(tags, may)))
 
 
-SHARED = "one lane for both directions"
+COUNTED = ("lanes", "lanes:forward", "lanes:backward", "lanes:both_ways")
+
+SHARED = "one lane for both directions, a lane each was built"
 """The doubt about a two-way road with ``lanes=1``: each direction gets a lane."""
 
 

@@ -76,7 +76,9 @@ PLACES = {"UK": "GB", "BE-BRU": "BE-brussels", "GB-UKM": "GB"}
 NO_UNIT = "limits without mph, read as km/h"
 """The doubt about a number without mph where signs are in miles."""
 
-_NUMBER = re.compile(r"(\d+(?:\.\d+)?)\s*(km/h|kmh|kph|kmph|mph)?", re.IGNORECASE)
+KMH_PER_KNOT = 1.852
+
+_NUMBER = re.compile(r"(\d+(?:\.\d+)?)\s*(km/h|kmh|kph|kmph|mph|knots)?", re.IGNORECASE)
 _ZONE = re.compile(r"([A-Za-z]{2}(?:-[A-Za-z0-9]+)?):\s*(\S.*)")
 _ZONE_NUMBER = re.compile(r"(?:zone[:_]?)?(\d+)")
 
@@ -247,8 +249,14 @@ def _sign(value: str) -> str | None:
     if value == "walk":
         return f"{WALK_KMH:g}"
     numbers = [match for match in map(_NUMBER.fullmatch, _parts(value)) if match]
-    signs = [f"{match[1]} mph" if (match[2] or "").lower() == "mph" else match[1] for match in numbers]
+    signs = [_in_unit(match[1], (match[2] or "").lower()) for match in numbers]
     return min(filter(_is_possible, signs), key=kmh_of, default=None)
+
+
+def _in_unit(number: str, unit: str) -> str:
+    if unit == "knots":
+        return f"{float(number) * KMH_PER_KNOT:.1f}"
+    return f"{number} mph" if unit == "mph" else number
 
 
 def _is_possible(sign: str) -> bool:

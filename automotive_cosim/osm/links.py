@@ -44,11 +44,12 @@ def read_links(text: str) -> Links:
     return Links(found, dict(_JUNCTION.findall(text)))
 
 
-def with_stops(text: str, edges: Set[str], junctions: Set[str]) -> str:
-    """The text with cars that stop before they yield.
+def with_stops(text: str, links: Links, edges: Set[str], junctions: Set[str]) -> tuple[str, Links]:
+    """A network's text and connections with cars that stop before they yield.
 
     Args:
-        text: a network's.
+        text: the network's.
+        links: its connections.
         edges: those at whose end cars stop.
         junctions: the junctions there.
     """
@@ -57,7 +58,13 @@ def with_stops(text: str, edges: Set[str], junctions: Set[str]) -> str:
         return f'{link[0][:-2]}s"' if link[1] in edges and link[7] == "m" else link[0]
 
     def typed(junction: re.Match[str]) -> str:
-        is_priority = junction[1] in junctions and junction[2] == "priority"
-        return f'<junction id="{junction[1]}" type="priority_stop"' if is_priority else junction[0]
+        is_stop = junction[1] in junctions and junction[2] == "priority"
+        return f'<junction id="{junction[1]}" type="priority_stop"' if is_stop else junction[0]
 
-    return _JUNCTION.sub(typed, _CONNECTION.sub(stopping, text))
+    stopped = {
+        edge: [link._replace(state="s") if link.state == "m" else link for link in links.of.get(edge, ())]
+        for edge in edges
+    }
+    types = {ref: "priority_stop" for ref in junctions if links.types.get(ref) == "priority"}
+    text = _JUNCTION.sub(typed, _CONNECTION.sub(stopping, text))
+    return text, Links({**links.of, **stopped}, {**links.types, **types})

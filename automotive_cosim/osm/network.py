@@ -12,6 +12,7 @@ from xml.sax.saxutils import quoteattr, unescape
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.osm.barriers import Cut, Piece, cut
 from automotive_cosim.osm.cameras import Cameras, cameras_of
 from automotive_cosim.osm.country import LEFT_HAND
@@ -138,7 +139,7 @@ def convert(
 
     def converted(more: Mapping[str, str]) -> tuple[bool, str]:
         for option, patch in more.items():
-            (scratch / f"signs{option}.xml").write_text(patch, encoding="utf-8")
+            write_whole(scratch / f"signs{option}.xml", patch)
         return run(
             "netconvert",
             (
@@ -173,32 +174,31 @@ def convert(
     text = _ESCAPED_TWICE.sub(r"&\1;", text)
     text = _NUMBER.sub(lambda number: _id_of(barred.pieces[int(number[0]) - FIRST_NUMBER]), text)
     tell("building the network, its lanes", None)
-    text, opened = open_traps(text)
+    links, goals = read_links(text), dict(_GOAL.findall(text))
+    text, opened = open_traps(text, links)
     tell("building the network, its parameters", None)
-    text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
+    signed = followed(signs, joints, links, goals)
+    if stops := {edge_id for edge_id, kind in signed.items() if kind == STOP}:
+        text, links = with_stops(text, links, stops, {goals[edge_id] for edge_id in stops})
+    named = {edge_id: {SIGN: kind} for edge_id, kind in signed.items()}
+    text = _with_parameters(
+        text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id) | named.get(edge_id, {})
+    )
     if any(road.stated.lanes_forward or road.stated.lanes_backward for road in roads.values()):
         text = _with_lane_signs(text, roads)
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
-    raw.write_text(text, encoding="utf-8")
+    write_whole(raw, text.encode())
     tell("reading the network", None)
     network = read_network(raw)
     cameras = cameras_of(network, extract)
     more = {edge_id: {"speed_camera": places} for edge_id, places in cameras.beside.items()}
     for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
         more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
-    links = read_links(text)
-    goals = {edge_id: edge.to_node for edge_id, edge in network.edges.items()}
-    signed = followed(signs, joints, links, goals)
-    for edge_id, kind in signed.items():
-        more.setdefault(edge_id, {})[SIGN] = kind
-    if stops := {edge_id for edge_id, kind in signed.items() if kind == STOP}:
-        text = with_stops(text, stops, {network.edges[edge_id].to_node for edge_id in stops})
-        links = read_links(text)
     if more:
         text = _with_parameters(text, lambda edge_id: more.get(edge_id, {}))
-        raw.write_text(text, encoding="utf-8")
+        write_whole(raw, text.encode())
         network = read_network(raw)
-    target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
+    write_whole(target, gzip.compress(text.encode(), compresslevel=9, mtime=0))
     edges, unlit = tuple(network.edges.values()), tuple(dark(joints, links, goals))
     return Built(network, edges, signals, roundabouts, barred, turns, signs, cameras, links, opened, unlit)
 
@@ -233,7 +233,8 @@ def write_osm(
     ``FIRST_NUMBER``."""
     osmium = import_module("osmium")
     mutable = osmium.osm.mutable
-    with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True) as writer:
+    threads = osmium.io.ThreadPool(1)  # of its own: a process that reads a map must not be forked from shared ones
+    with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True, thread_pool=threads) as writer:
         for node_id, node in extract.nodes.items():
             writer.add_node(mutable.Node(id=node_id, location=node.position, tags=dict(node.tags)))
         for node_id, position in barred.ends.items():
@@ -275,6 +276,9 @@ _DIGITS = re.compile(r"\d+")
 _EDGE = re.compile(r'(<edge id=("[^":][^"]*")(?: [^>]*)?[^/]>.*?)(\s*</edge>)', re.DOTALL)
 """An edge that is not inside a junction: all before its end, its quoted id, its end."""
 
+
+_GOAL = re.compile(r'<edge id="([^":][^"]*)" from="[^"]*" to="([^"]*)"')
+"""The id of an edge, and the junction to which it leads."""
 
 _LANE = re.compile(r'<lane ([^>]*?)speed="[^"]*"([^>]*?)/>')
 """A lane without parameters."""

@@ -42,7 +42,7 @@ IMPLIED: Mapping[tuple[str, str], Implied] = {
     ("motorroad", "yes"): Implied(False, "Key:motorroad: implies access, not direction"),
     ("dual_carriageway", "yes"): Implied(False, "Key:dual_carriageway: is added to oneway=yes", told=True),
 }
-"""What the tags of a road say about its direction. Service roads are not imported; no link implies one."""
+"""What the tags of a road say about its direction. No link implies one."""
 
 IMPLYING = ("highway", "junction")
 NOTHING = Implied(False, "")

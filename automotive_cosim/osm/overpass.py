@@ -25,6 +25,7 @@ from typing import IO
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.formats.writing import copy, drafted
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.ground import TAGS
 from automotive_cosim.osm.settings import DownloadLimits
@@ -65,10 +66,11 @@ class _BusyError(Exception):
 
 
 def query(area: Area, limits: DownloadLimits) -> str:
-    """What to ask for, in Overpass QL: the roads of an area, with turn restrictions, speed cameras and
-    what these enforce; water and
-    green; in an area of at most ``BUILDINGS_KM2``, buildings too."""
+    """What to ask for, in Overpass QL: the roads of an area, with turn restrictions, signs, speed cameras and what
+    these enforce, and zones for some cars; water and green; in an area of at most ``BUILDINGS_KM2``, buildings."""
     box = f"{area.south_deg:.7f},{area.west_deg:.7f},{area.north_deg:.7f},{area.east_deg:.7f}"
+    middle = f"{(area.south_deg + area.north_deg) / 2:.7f},{(area.west_deg + area.east_deg) / 2:.7f}"
+    zones = '[boundary~"^(low_emission_zone|limited_traffic_zone)$"]'
     values: dict[str, list[str]] = {}
     for keys in TAGS.values():
         for key, words in keys.items():
@@ -80,10 +82,12 @@ def query(area: Area, limits: DownloadLimits) -> str:
         f"[out:xml][timeout:{limits.timeout_s:.0f}][maxsize:{limits.size_mb * 1e6:.0f}];"
         f"way[highway]({box})->.roads;"
         f"({ground})->.ground;"
-        f"node[highway=speed_camera]({box})->.cameras;"
+        f'node[highway~"^(speed_camera|stop|give_way)$"]({box})->.cameras;'
         "rel(bn.cameras)[type=enforcement]->.watches;"
-        f'(.roads;node(w.roads);rel(bw.roads)[type~"^restriction"];'
-        ".cameras;.watches;node(r.watches);.ground;.ground >;);"
+        f"is_in({middle})->.here;"
+        f"(rel{zones}({box});rel(pivot.here){zones};)->.zones;"
+        f'(.roads;node(w.roads);rel(bw.roads)[type~"^(restriction|connectivity)"];'
+        ".cameras;.watches;node(r.watches);.zones;.ground;.ground >;);"
         "out body;"
     )
 
@@ -121,11 +125,11 @@ def download(
         },
     )
     try:
-        with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.absolute().parent) as scratch:
+        with tempfile.TemporaryDirectory(prefix="automotive-cosim-map-") as scratch:
             fetched = Path(scratch) / "answer.osm"
             _fetch_patiently(request, fetched, limits, tell, sleep)
             found = _judge(fetched, endpoint)
-            fetched.rename(target)
+            copy(fetched, target, round(limits.size_mb * 1e6))
     except OSError as error:
         raise ImportMapError(f"{target} cannot be written ({error.strerror}); choose another --out") from error
     return found
@@ -174,7 +178,7 @@ def _fetch_patiently(
 def _fetch(request: urllib.request.Request, target: Path, limits: DownloadLimits, tell: Tell) -> None:
     tell("asking the server", None)
     try:
-        with urllib.request.urlopen(request, timeout=limits.timeout_s) as answer, target.open("wb") as file:
+        with urllib.request.urlopen(request, timeout=limits.timeout_s) as answer, drafted(target) as file:
             _copy(answer, file, limits, tell)
     except urllib.error.HTTPError as error:
         with error:

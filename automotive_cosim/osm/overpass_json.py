@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.errors import ImportMapError
-from automotive_cosim.formats.files import MOST_UNPACKED_BYTES, read_json
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.words import shown
 
 Tags = Mapping[str, str]
@@ -62,7 +63,8 @@ class OverpassJson:
             ImportMapError: it is truncated, or not the JSON of an Overpass server.
         """
         try:
-            read = read_json(source, MOST_UNPACKED_BYTES)  # as many values as there are bytes
+            # As many values as there are bytes: the process that reads it has limits.
+            read = read_json(source, bounds.UNPACKED_BYTES)
         except (OSError, ValueError) as error:
             raise ImportMapError(f"{source} is truncated or not JSON ({error}); download it again") from error
         elements = read.get("elements") if isinstance(read, dict) else None

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from automotive_cosim.osm.links import Link, read_links
+from automotive_cosim.osm.links import Link, Links
 
 SHORT_M = 50.0
 """On a shorter edge there is no room to sort oneself into lanes, so it is never parted."""
@@ -33,16 +33,17 @@ class _Lanes:
     """The edges from which links lead onto an edge."""
 
 
-def open_traps(text: str) -> tuple[str, tuple[str, ...]]:
+def open_traps(text: str, links: Links) -> tuple[str, tuple[str, ...]]:
     """Opens the lanes between lanes for cars that trap cars.
 
     Args:
         text: a SUMO network.
+        links: its connections.
 
     Returns:
         The network, and the edges on which lanes were opened.
     """
-    lanes = _read(text)
+    lanes = _read(text, links)
     opened: set[str] = set()
     while trapped := {edge for edge in lanes.open.keys() - opened if _traps(edge, lanes)}:
         for edge in trapped:
@@ -94,14 +95,14 @@ def _blocks(is_open: Sequence[bool]) -> Blocks:
     return tuple(map(frozenset, blocks))
 
 
-def _read(text: str) -> _Lanes:
-    lanes = _Lanes(links=read_links(text).of)
+def _read(text: str, links: Links) -> _Lanes:
+    lanes = _Lanes(links=links.of)
     for edge, inner in _EDGE.findall(text):
         of_edge = [dict(_ATTRIBUTE.findall(lane)) for lane in _LANES.findall(inner)]
         lanes.open[edge] = [_open_to_cars(lane) for lane in of_edge]
         lanes.length_m[edge] = float(of_edge[0]["length"])
-    for edge, links in lanes.links.items():
-        for link in links:
+    for edge, onward in lanes.links.items():
+        for link in onward:
             lanes.origins.setdefault(link.to_edge, set()).add(edge)
     return lanes
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -10,6 +9,8 @@ from pathlib import Path
 
 from automotive_cosim.contracts import GroundKind, LimitSource
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.osm import ramps
 from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.area import Area
@@ -82,7 +83,7 @@ class ImportReport:
 
     def write(self, target: Path) -> None:
         """Writes the report as JSON."""
-        target.write_text(json.dumps(asdict(self), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        write_whole(target, json.dumps(asdict(self), indent=2, ensure_ascii=False) + "\n")
 
 
 def make_report(
@@ -113,7 +114,7 @@ def make_report(
     tunnels = [edge for edge in edges if edge.in_tunnel]
     return ImportReport(
         source=source.name,
-        source_sha256=hashlib.sha256(source.read_bytes()).hexdigest(),
+        source_sha256=file_sha256(source),
         attribution=ATTRIBUTION,
         country=country,
         bbox=area,

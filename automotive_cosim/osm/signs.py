@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import compress, pairwise
 from typing import NamedTuple
 
 from automotive_cosim.osm.access import ENDS
@@ -36,11 +36,17 @@ FARTHEST_M = 100.0
 SIGNALS_WITHIN_M = 40.0
 """Signals this near to a junction may be its own: they decide, and a patch of its type would take them away."""
 
+BAND_DEG = 0.0005
+"""Bands of latitude in which signals are looked up, wider than that distance."""
+
 PRIORITY = {STOP: 0, GIVE_WAY: -1}
 """Of an approach with a sign, below every class of roads; who stops has it over who only yields."""
 
 MAJOR = 14
 """Of the approaches without one, where their classes differ: as high as a motorway's."""
+
+PRIORITY_ROAD = {"yes": True, "designated": True, "yes_unposted": True, "no": False, "end": False}
+"""Values of ``priority_road`` (OSM wiki, "Key:priority_road"): who joins such a road gives way."""
 
 AT_SIGNALS = "at signals, which decide there"
 AT_JOINED = "at junctions where netconvert gives right of way otherwise"
@@ -154,7 +160,11 @@ class MappedSigns:
     ruled: dict[int, bool] = field(default_factory=dict)
     """The junctions of which some approaches have signs, and whether they certainly have no signals."""
     majors: list[Approach] = field(default_factory=list)
-    """The other approaches there, where their classes differ."""
+    """The other approaches there, where their classes differ, and all of ``prior``."""
+    prior: list[Approach] = field(default_factory=list)
+    """Those of priority roads, where others join."""
+    yielding: list[int] = field(default_factory=list)
+    """Priority roads, by their ways, whose cars the network makes yield where others join."""
     left_out: dict[str, list[int]] = field(default_factory=dict)
     """Nodes of signs that are not followed, by the reason."""
 
@@ -163,12 +173,18 @@ class MappedSigns:
         self.left_out.setdefault(why, []).extend(nodes)
 
 
+def kind_of(tags: Mapping[str, str]) -> str:
+    """The value of ``KINDS`` that a node has, also among others, or by its ``stop`` alone; empty without."""
+    values = tags.get("highway", "").replace(" ", "").split(";")
+    return next((kind for kind in KINDS if kind in values), STOP if "stop" in tags and values == [""] else "")
+
+
 def read_signs(joints: Joints) -> MappedSigns:
     """The signs of a map, each with its approach."""
     signs, every = MappedSigns(), set[int]()
     for ref, node in joints.nodes.items():
-        kind, stop = node.tags.get("highway", ""), node.tags.get("stop", "")
-        if kind not in KINDS or ref not in joints.at:
+        kind, stop = kind_of(node.tags), node.tags.get("stop", "")
+        if not kind or ref not in joints.at:
             continue
         if joints.arms[ref] <= 2:
             found = _place(kind, ref, node.tags, joints, signs) if kind != MINI else []
@@ -207,15 +223,33 @@ def _place(kind: str, ref: int, tags: Mapping[str, str], joints: Joints, signs: 
     return [approach for _, approach in found]
 
 
+def has_priority(tags: Mapping[str, str], end: str) -> bool:
+    """Whether a road is a priority road, in a direction of ``access.ENDS``."""
+    return PRIORITY_ROAD.get(tags.get(f"priority_road:{end}") or tags.get("priority_road", ""), False)
+
+
+def _prior(joints: Joints) -> Iterator[tuple[int, list[Approach]]]:
+    """The junctions where roads join a priority road, and its approaches."""
+    prior = [any(has_priority(piece.way.tags, end) for end in ENDS) for piece in joints.pieces]
+    for ref in dict.fromkeys(ref for path in compress(joints.paths, prior) for ref in path if joints.arms[ref] > 2):
+        arriving = list(joints.arriving(ref))
+        first = [each for each in arriving if has_priority(joints.pieces[each.piece].way.tags, each.end)]
+        if first and len(first) < len(arriving):
+            yield ref, first
+
+
 def _rule(joints: Joints, signs: MappedSigns, every: set[int]) -> None:
     """Says which junctions get a type, and at which the approaches get priorities."""
-    signals = [node.position for ref, node in joints.nodes.items() if joints.has_signal(ref)]
+    signals: dict[int, list[Position]] = {}
+    for ref in filter(joints.has_signal, joints.nodes):
+        place = joints.nodes[ref].position
+        signals.setdefault(round(place.lat_deg / BAND_DEG), []).append(place)
 
     def is_free(ref: int) -> bool:
         here = joints.nodes[ref].position
-        return all(
-            abs(here[1] - lat) > 0.001 or away_m(here, (lon, lat)) > SIGNALS_WITHIN_M for lon, lat in signals
-        )
+        band = round(here.lat_deg / BAND_DEG)
+        near = (place for each in (band - 1, band, band + 1) for place in signals.get(each, ()))
+        return all(away_m(here, place) > SIGNALS_WITHIN_M for place in near)
 
     by_junction: dict[int, set[Approach]] = {}
     for approach in signs.approaches:
@@ -231,6 +265,12 @@ def _rule(joints: Joints, signs: MappedSigns, every: set[int]) -> None:
             signs.ruled[ref] = is_free(ref)
             if len({joints.pieces[each.piece].way.road_class for each in rest}) > 1:
                 signs.majors += rest
+    for ref, first in _prior(joints):
+        is_round = any(joints.pieces[each.piece].way.tags.get("junction") in ROUND for each in joints.arriving(ref))
+        if ref not in wanted and not is_round and not by_junction.get(ref, set()) & set(first):
+            signs.ruled[ref] = is_free(ref)
+            signs.majors += first
+            signs.prior += first
     signs.types = {ref: kind for ref, kind in wanted.items() if ref in joints.nodes and is_free(ref)}
 
 
@@ -279,6 +319,15 @@ def followed(signs: MappedSigns, joints: Joints, links: Links, goals: Mapping[st
         edges |= dict.fromkeys(minor, STOP)
         if not minor and (not kind or links.types.get(str(ref)) != kind):
             signs.leave_out(AT_JOINED if ref in signs.types or not kind else AT_SIGNALS, ref)
+    for approach in signs.prior:
+        edge = joints.edge_id(approach)
+        states = {link.state for link in links.of.get(edge, ()) if link.direction != "t"}
+        if (
+            states
+            and "M" not in states
+            and not links.types.get(goals.get(edge, ""), "").startswith("traffic_light")
+        ):
+            signs.yielding.append(joints.pieces[approach.piece].way.way_id)
     return edges
 
 

@@ -89,6 +89,10 @@ class ProofJob(LoneJob):
         """The proof's name in results: task and seed."""
         return proof_id(self.task, self.seed)
 
+    def planned(self) -> Proof:
+        """Its row before anything is proven."""
+        return Proof(id=self.id, task=self.task, seed=self.seed)
+
 
 def prove(
     tasks: Sequence[str],
@@ -136,7 +140,7 @@ def prove(
         for done, proof in enumerate(kept, start=1):
             tell(proof, done, len(jobs))
         opener = partial(proofs, plan.gates)
-        run_jobs(jobs, store, opener, failed, executor=Processes(workers), retries=1, tell=heard)
+        run_jobs(jobs, store, opener, executor=Processes(workers), retries=1, tell=heard)
         found = [store.rows[job.id] for job in jobs]
     order = {task_id: number for number, task_id in enumerate(CATALOGUE)}
     return sorted(found, key=lambda proof: (order[proof.task], proof.seed))
@@ -148,8 +152,3 @@ def proofs(chosen: Sequence[str]) -> Iterator[Runner[ProofJob, Proof]]:
     with closing(Prover(chosen)) as prover:
         # Only the row of a proof is kept.
         yield lambda job, folder: prover.prove(job.task, job.seed, job.after)
-
-
-def failed(job: ProofJob, kind: str, why: str) -> Proof:
-    """The row of a proof that ended in an infrastructure error."""
-    return Proof(id=job.id, task=job.task, seed=job.seed, error=f"{kind}: {why}", error_kind=kind)

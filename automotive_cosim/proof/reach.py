@@ -21,7 +21,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
 from automotive_cosim.errors import TriggerNotReachedError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.plan import choose
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Half
@@ -82,7 +83,7 @@ def read(path: Path) -> Mapping[str, Reach]:
     """A record by task and half; empty if there is none."""
     if not path.is_file():
         return {}
-    rows: Mapping[str, Json] = json.loads(path.read_text(encoding="utf-8"))
+    rows: Mapping[str, Json] = read_json(path)
     return {
         name: Reach(row["situation"], tuple(row["reached"]), tuple(row.get("missed", ())))
         for name, row in rows.items()

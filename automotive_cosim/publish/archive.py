@@ -10,14 +10,17 @@ traces/ID.judged.json.xz         the input of its verdict
 from __future__ import annotations
 
 import re
+import shutil
 import tempfile
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import drafted, open_file
+from automotive_cosim.formats.files import open_file
+from automotive_cosim.formats.writing import drafted, make_folder
 from automotive_cosim.publish.contents import NAME
 
 MEMBER = re.compile(
@@ -28,7 +31,6 @@ MOST_BYTES = 8 * 2**30
 """Largest bundle that is unpacked."""
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)
 """The time of every file: the earliest that a zip can store."""
-_CHUNK_BYTES = 2**20
 
 
 def members(folder: Path) -> list[str]:
@@ -37,24 +39,19 @@ def members(folder: Path) -> list[str]:
     return sorted(found, key=lambda name: (name != NAME, name))
 
 
-def pack(folder: Path, out: Path) -> None:
-    """Packs the files of a folder, whole or not at all.
+def pack(folder: Path, file: IO[bytes]) -> None:
+    """Packs the files of a folder.
 
     Raises:
-        UserError: the archive cannot be written.
+        OSError: the archive cannot be written.
     """
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        with drafted(out) as draft, zipfile.ZipFile(draft, "w") as archive:
-            for name in members(folder):
-                entry = zipfile.ZipInfo(name, _LONG_AGO)
-                entry.create_system, entry.external_attr = 3, 0o644 << 16
-                entry.file_size = (folder / name).stat().st_size
-                with archive.open(entry, "w") as target, (folder / name).open("rb") as source:
-                    while chunk := source.read(_CHUNK_BYTES):
-                        target.write(chunk)
-    except OSError as error:
-        raise UserError(f"cannot write {out}: {error.strerror or error}; give --out another file") from error
+    with zipfile.ZipFile(file, "w") as archive:
+        for name in members(folder):
+            entry = zipfile.ZipInfo(name, _LONG_AGO)
+            entry.create_system, entry.external_attr = 3, 0o644 << 16
+            entry.file_size = (folder / name).stat().st_size
+            with archive.open(entry, "w") as target, (folder / name).open("rb") as source:
+                shutil.copyfileobj(source, target)
 
 
 @contextmanager
@@ -75,7 +72,7 @@ def unpack(bundle: Path, folder: Path) -> None:
     Raises:
         UserError: it is not a bundle, or contains a file that does not belong there.
     """
-    (folder / "traces").mkdir()
+    make_folder(folder, "traces")
     try:
         with open_file(bundle) as file, zipfile.ZipFile(file) as archive:
             _unpack(bundle, archive, folder)
@@ -99,8 +96,7 @@ def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
                 f"{bundle} is compressed, larger than {MOST_BYTES >> 30} GB or holds more than its size; a bundle "
                 "does not"
             )
-        with archive.open(entry) as source, path.open("wb") as target:
-            while chunk := source.read(_CHUNK_BYTES):
-                target.write(chunk)
+        with archive.open(entry) as source, drafted(path) as target:
+            shutil.copyfileobj(source, target)
     if not (folder / NAME).is_file():
         raise UserError(f"{bundle} is not a bundle: it has no {NAME}; `automotive-cosim publish bundle` makes one")

@@ -12,7 +12,6 @@ import json
 import lzma
 import os
 import re
-import shutil
 import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
@@ -21,8 +20,12 @@ from typing import Any
 
 from automotive_cosim.contracts import FeedbackCode, Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.formats.keys import letters, spelled
+from automotive_cosim.formats.layout import TRACES
+from automotive_cosim.formats.writing import copy, drafted, make_folder, write_whole
 from automotive_cosim.publish import archive
-from automotive_cosim.publish.contents import FORMAT, NAME, Contents, counts, file_sha256
+from automotive_cosim.publish.contents import FORMAT, NAME, Contents, counts
 from automotive_cosim.run.coverage import coverage
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.row import as_json
@@ -31,8 +34,8 @@ from automotive_cosim.run.store import read_evaluation, read_trace, trace_file, 
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
 
-SHORTEST_KEY = 12
-"""A shorter value of a variable that is named like a key is a dummy and may occur anywhere."""
+SECRET = r"KEY|TOKEN|SECRET|PASSWORD"
+"""In the name of a variable whose value is not published."""
 _PATH = re.compile(r"""(?<![\w.:/\\<])(?:[A-Za-z]:)?[/\\](?=[\w.~])[^\s'"<>|,;()\[\]]+""")
 """An absolute path in a text."""
 _HOME = re.compile(r"/home/\w|/Users/\w|/root/|[A-Za-z]:\\{1,2}Users\\{1,2}\w")
@@ -57,22 +60,26 @@ def write_bundle(folder: Path, out: Path) -> Contents:
     for name in (*manifest["plan"]["scenarios"], *manifest["plan"]["agents"]):
         if PurePosixPath(name).is_absolute() or PureWindowsPath(name).is_absolute():
             raise UserError(f"the plan of {folder} names {name!r} by an absolute path; run it with a relative one")
-    with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
-        staged = Path(name)
-        kept = [_stage(folder, rows[name], staged) for name in sorted(rows)]
-        (staged / "manifest.json").write_text(json.dumps(manifest, indent=1), encoding="utf-8", newline="\n")
-        lines = "".join(json.dumps(as_json(row), ensure_ascii=False) + "\n" for row in kept)
-        (staged / "episodes.jsonl").write_text(lines, encoding="utf-8", newline="\n")
-        _refuse_secrets(staged, os.environ)
-        made = Contents(
-            FORMAT,
-            ran_with(manifest),
-            counts(found, sum(row.has_succeeded for row in kept)),
-            {name: file_sha256(staged / name) for name in archive.members(staged)},
-        )
-        (staged / NAME).write_text(made.text(), encoding="utf-8", newline="\n")
-        archive.pack(staged, out)
-    return made
+    try:
+        make_folder(out.parent)
+        with drafted(out) as file, tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
+            staged = Path(name)
+            kept = [_stage(folder, rows[name], staged) for name in sorted(rows)]
+            write_whole(staged / "manifest.json", json.dumps(manifest, indent=1).encode())
+            lines = "".join(json.dumps(as_json(row), ensure_ascii=False) + "\n" for row in kept)
+            write_whole(staged / "episodes.jsonl", lines.encode())
+            _refuse_secrets(staged, os.environ)
+            contents = Contents(
+                FORMAT,
+                ran_with(manifest),
+                counts(found, sum(row.has_succeeded for row in kept)),
+                {name: file_sha256(staged / name) for name in archive.members(staged)},
+            )
+            write_whole(staged / NAME, contents.text().encode())
+            archive.pack(staged, file)
+    except OSError as error:
+        raise UserError(f"cannot write {out}: {error.strerror or error}; give --out another file") from error
+    return contents
 
 
 def cleaned(text: str) -> str:
@@ -92,15 +99,13 @@ def _stage(folder: Path, row: TrialRow, staged: Path) -> TrialRow:
         failed_attempts=tuple(map(cleaned, row.failed_attempts)),
     )
     if row.outcome is not None:
-        for path in (trace_file(folder, row.id), judged_file(folder, row.id)):
+        for path in (folder / TRACES, trace_file(folder, row.id), judged_file(folder, row.id)):
             if path.is_symlink():
                 raise UserError(
                     f"{path} is a link, and may lead to what is not to be published; copy the file there"
                 )
             if path.is_file():
-                target = staged / "traces" / path.name
-                target.parent.mkdir(exist_ok=True)
-                shutil.copyfile(path, target)
+                copy(path, make_folder(staged, TRACES) / path.name, archive.MOST_BYTES)
         if trace_file(staged, row.id).is_file():
             lines = read_trace(staged, row.id)
             if (published := list(map(_cleaned_line, lines))) != lines:
@@ -139,18 +144,16 @@ def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
     Raises:
         UserError: a file contains a key of the environment or the path of a home folder.
     """
-    secrets = {
-        value.encode(): name
-        for name, value in environment.items()
-        if re.search(r"KEY|TOKEN|SECRET|PASSWORD", name) and len(value) >= SHORTEST_KEY
-    }
+    secrets = {value: name for name, value in environment.items() if re.search(SECRET, name, re.IGNORECASE)}
     for name in archive.members(staged):
         data = (staged / name).read_bytes()
         data = {".gz": gzip.decompress, ".xz": lzma.decompress}.get(Path(name).suffix, bytes)(data)
+        text = data.decode(errors="replace")
+        told = letters(text)
         for secret, variable in secrets.items():
-            if secret in data:
+            if any(spelled(told, secret)):
                 raise UserError(f"{name} contains the value of {variable}; remove it from the evaluation first")
-        if found := _HOME.search(text := data.decode(errors="replace")):
+        if found := _HOME.search(text):
             told = text[found.start() : found.end() + 20]
             raise UserError(
                 f"{name} contains the path of a home folder: {told!r}; remove it from the evaluation first"

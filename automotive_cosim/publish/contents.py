@@ -73,12 +73,6 @@ def counts(found: Coverage, successes: int) -> BundleCounts:
     return BundleCounts(found.planned, found.judged, successes, found.errors, len(found.not_run))
 
 
-def file_sha256(path: Path) -> str:
-    """The hash of a file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
 def read_contents(folder: Path) -> Contents:
     """The file of an unpacked bundle.
 

@@ -12,7 +12,8 @@ from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
-from automotive_cosim.formats.files import CHUNK_BYTES, opened
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.files import opened
 from automotive_cosim.interface.trace import SAID, Step, element, plain, sha256
 from automotive_cosim.measures import nearest_s
 from automotive_cosim.publish.drives import PLANNED as DRIVE_PLANNED
@@ -108,7 +109,7 @@ def _too_large(folder: Path, job: TrialJob) -> Problem | None:
         if path.is_file():
             left = most
             with opened(path) as file:
-                while left >= 0 and (chunk := file.read(CHUNK_BYTES)):
+                while left >= 0 and (chunk := file.read(bounds.CHUNK_BYTES)):
                     left -= len(chunk)
             if left < 0:
                 where = path.relative_to(folder).as_posix()

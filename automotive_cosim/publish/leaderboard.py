@@ -16,7 +16,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
 from automotive_cosim.publish.verify import verify

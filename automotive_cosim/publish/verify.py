@@ -24,10 +24,12 @@ from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import CosimError
+from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.formats.limited import LimitedProcesses
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.publish import archive
-from automotive_cosim.publish.contents import NAME, Contents, counts, file_sha256, read_contents
+from automotive_cosim.publish.contents import NAME, Contents, counts, read_contents
 from automotive_cosim.publish.episodes import check_trial
-from automotive_cosim.publish.limited import LimitedProcesses
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.run.coverage import Coverage, coverage
@@ -185,7 +187,8 @@ def hash_problems(folder: Path, contents: Contents) -> list[Problem]:
 def _archive_problems(folder: Path, bundle: Path) -> Iterator[Problem]:
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
         again = Path(name) / bundle.name
-        archive.pack(folder, again)
+        with drafted(again) as file:
+            archive.pack(folder, file)
         if not filecmp.cmp(again, bundle, shallow=False):
             yield Problem(
                 bundle.name, "", "is not, to the byte, the archive that `publish bundle` makes of its files"

@@ -17,6 +17,7 @@ from automotive_cosim.agents.native.grid import GuiScreen
 from automotive_cosim.agents.native.verbs import call_for
 from automotive_cosim.contracts import Action, ActionType, Json
 from automotive_cosim.contracts.ids import resource_id
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.models import ChatMessage, ModelReply, Rules
 from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, ProviderApi
 from automotive_cosim.models.base import estimated_tokens
@@ -173,7 +174,7 @@ def main() -> None:
     with closing(Simulations()) as simulations:
         for name, conversation in made(simulations).items():
             path = Path(__file__).with_name(f"{name}{SUFFIX}")
-            path.write_text(written(conversation), encoding="utf-8")
+            write_whole(path, written(conversation))
             print(path)
 
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import PICTURES
 from automotive_cosim.report.findings import PLACE
 from automotive_cosim.report.page import embedded
@@ -73,7 +74,7 @@ def _side(folder: Path, row: EpisodeRow) -> Side:
         Plot(result.path, result.timeline, 480, 260),
         Plot(result.path, result.timeline, 360, 240),
         tuple(_told(steps)),
-        embedded(screens[-1].read_bytes(), "jpeg") if screens else "",
+        embedded(read_bytes(screens[-1]), "jpeg") if screens else "",
     )
 
 

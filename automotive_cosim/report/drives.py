@@ -16,7 +16,7 @@ from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.judge import FULL_S
 from automotive_cosim.drives.score import Score, together
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.measures.exposure import summed
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.charts import Chart
@@ -462,7 +462,7 @@ def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, Chart]:
         if found is None:
             continue
         plot = timeline_chart(row, found, f"{row.family}, seed {row.seed}: {contestant(row).label}")
-        write_whole(folder / "plots" / f"{row.id}.svg", plot.svg)
+        write_whole(make_folder(folder, "plots") / f"{row.id}.svg", plot.svg)
         if len(plots) < SHOWN:
             plots[row.id] = plot
     return plots

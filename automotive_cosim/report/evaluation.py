@@ -10,8 +10,8 @@ from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import told
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import write_whole
 from automotive_cosim.formats.layout import PICTURES
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report import drives, findings
 from automotive_cosim.report.answer import answer
 from automotive_cosim.report.case import contrast
@@ -59,11 +59,11 @@ def write_report(folder: Path) -> Path:
     plots = charts(results.shared()) if results.rows else {}
     of_drives = drives.tables(results.drives)
     try:
-        write_files(folder, (*made, *of_drives), plots.values())
-        page = folder / "report.html"
-        driven = of_drives, drives.timelines(folder, results.drives)
-        told = _page(results, made, plots, found, driven) if results.rows else _drives_page(results, *driven)
-        write_whole(page, told)
+        with drafted(page := folder / "report.html") as file:
+            write_files(folder, (*made, *of_drives), plots.values())
+            driven = of_drives, drives.timelines(folder, results.drives)
+            told = _page(results, made, plots, found, driven) if results.rows else _drives_page(results, *driven)
+            file.write(told.encode())
     except OSError as error:
         raise cannot_write(folder, error) from error
     return page

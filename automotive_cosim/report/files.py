@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.tables import Table
 
@@ -17,11 +17,9 @@ def write_files(folder: Path, tables: Iterable[Table], plots: Iterable[Chart]) -
         OSError: they cannot be written.
         SetupError: matplotlib is not installed.
     """
-    for name in ("tables", "plots"):
-        (folder / name).mkdir(exist_ok=True)
     for table in tables:
         for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
-            write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
+            write_whole(make_folder(folder, "tables") / f"{table.name}.{suffix}", text)
     for plot in plots:
         for suffix, content in plot.files():
-            write_whole(folder / "plots" / f"{plot.name}.{suffix}", content)
+            write_whole(make_folder(folder, "plots") / f"{plot.name}.{suffix}", content)

@@ -8,12 +8,12 @@ from PIL import Image
 
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
+from automotive_cosim.cockpit.theme import NIGHT, Type
 from automotive_cosim.formats.layout import FILM
 from automotive_cosim.formats.layout import ROAD as ROAD_FILE
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmplot import speed_plot
-from automotive_cosim.report.filmroad import RoadPainter
+from automotive_cosim.report.filmroad import RoadPainter, draw_road_sign
 from automotive_cosim.report.frames import SAME_TIME_S, FilmFrame, Frames, save_animation
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.road import EMPTY, read_record
@@ -59,7 +59,7 @@ class Film(Frames):
         canvas.box(COCKPIT.inset(-3), NIGHT.pressed, 17)
         canvas.picture(COCKPIT, frame.cockpit, 14)
         painter.draw(canvas, ROAD, past, (SIGN,))
-        _road_sign(canvas, here)
+        draw_road_sign(canvas, SIGN, here)
         canvas.picture(PLOT, speed_plot(result.path, len(past), *_pixels(PLOT), SCALE), 14)
         _info(canvas, frame, here)
         return canvas.image
@@ -67,23 +67,6 @@ class Film(Frames):
 
 def _pixels(rect: Rect) -> tuple[int, int]:
     return round(rect.right * SCALE) - round(rect.x * SCALE), round(rect.bottom * SCALE) - round(rect.y * SCALE)
-
-
-def _road_sign(canvas: Canvas, here: Sample) -> None:
-    """The road's name and its limit, on the map."""
-    name = here.road or "an unnamed road"
-    canvas.box(SIGN, NIGHT.surface, 12)
-    canvas.text(Rect(SIGN.x + 14, SIGN.y, SIGN.width - 82, SIGN.height), name, Type.STRONG, NIGHT.text)
-    if here.limit_kmh is not None:
-        _limit_sign(canvas, Rect(SIGN.right - 54, SIGN.y + 2, 48, 48), here.limit_kmh, here.speed_unit)
-
-
-def _limit_sign(canvas: Canvas, rect: Rect, limit_kmh: float, unit: str) -> None:
-    white: Colour = (255, 255, 255)
-    canvas.disc(rect, white)
-    canvas.disc(rect.inset(2), (200, 22, 30))
-    canvas.disc(rect.inset(8), white)
-    canvas.text(rect, amount_of_speed(limit_kmh, unit).split()[0], Type.STRONG, (10, 10, 10), "centre")
 
 
 def _info(canvas: Canvas, frame: FilmFrame, here: Sample) -> None:

@@ -1,4 +1,4 @@
-"""The road from above, heading up: ground, lanes, traffic lights and vehicles, with a trail of the drive so far."""
+"""The road from above: ground, lanes, traffic lights, vehicles, and one car or several that set out as one."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap, View
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
 from automotive_cosim.contracts import GroundKind, SeenVehicle, SumoSignal
 from automotive_cosim.geo.sun import SUNSET_DEG
+from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.run.road import RoadRecord, Second
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
@@ -33,6 +34,8 @@ LEAST_PX = 5.0
 """No vehicle is drawn shorter than this."""
 WIDE_PX, WIDE_M = 132, 1100.0
 """Side of the inset that shows the streets around, in pixels of the layout and in metres."""
+LENGTHWISE = (0.36, 0.5)
+"""Where the first car is in a picture of the road lengthwise, as shares of its width and height."""
 EGO = "ego"
 
 
@@ -106,50 +109,84 @@ class RoadPainter:
         here = past[-1]
         second = self._record.at(here.at_s)
         camera = Camera(here.x_m, here.y_m, here.heading_deg, METRES_PER_PIXEL)
-        dark = second is None or second.sun_deg is None or second.sun_deg < SUNSET_DEG
-        width, height = _pixels(area, canvas.scale)
-        picture = Image.new("RGB", (width, height), (NIGHTLY if dark else DAILY).land)
-        view = View(camera, canvas.scale * FINE / METRES_PER_PIXEL, width / 2, height * EGO_DOWN)
-        pen = _Pen(ImageDraw.Draw(picture), view, NIGHTLY if dark else DAILY, FINE * canvas.scale)
-        self._grounds.paint(pen.brush, view, (width, height), pen.colours.ground, FINE)
-        self._ground(pen, view.sight(width, height), second)
+        picture, pen = self._scene(canvas.scale, area, camera, (0.5, EGO_DOWN), second)
         pen.trail(past)
-        if second is not None:
-            for kind, x_m, y_m in second.incidents:
-                pen.incident(kind, x_m, y_m)
-            for vehicle in sorted(second.vehicles, key=lambda vehicle: vehicle.vehicle_id == EGO):
-                pen.vehicle(vehicle)
+        self._traffic(pen, second)
         if second is None or not second.vehicles:
-            pen.vehicle(SeenVehicle(EGO, "passenger", 4.5, 1.8, here.x_m, here.y_m, here.heading_deg, 0.0, 0))
+            pen.vehicle(_car(here), NIGHT.accent)
         canvas.picture(area, picture.reduce(FINE), RADIUS)
         inset = Rect(area.x + 10, area.bottom - WIDE_PX - 10, WIDE_PX, WIDE_PX)
-        if second is not None:
-            canvas.box(inset.inset(-2), NIGHT.pressed, RADIUS - 2)
-            canvas.picture(
-                inset,
-                self._around(here, second, pen.colours, canvas.scale, _pixels(inset, canvas.scale)),
-                RADIUS - 4,
-            )
+        if self._inset(canvas, inset, camera, second, pen.colours):
             avoid = (*avoid, inset)
         for name in self._map.names_in_sight(area, camera, avoid):
             if name.text != here.road:
                 canvas.box(name.rect, NIGHT.land, 8)
                 canvas.text(name.rect, name.text, Type.SMALL, NIGHT.text, "centre")
 
-    def _around(
-        self, here: Sample, second: Second, colours: Colours, scale: float, size: tuple[int, int]
-    ) -> Image.Image:
-        """The surrounding streets with a dot for each vehicle, also heading up."""
-        picture = Image.new("RGB", size, colours.land)
-        camera = Camera(here.x_m, here.y_m, here.heading_deg, WIDE_M / WIDE_PX, 0.5)
-        view = View(camera, size[0] / WIDE_M, size[0] / 2, size[1] / 2)
+    def draw_lengthwise(self, canvas: Canvas, area: Rect, cars: Mapping[Colour, Sample]) -> None:
+        """Draws the road with the drive going to the right, and on it several cars that set out as one.
+
+        Args:
+            canvas: the frame.
+            area: where to draw on it.
+            cars: where each is, by its colour; the first is the recorded one, among whose traffic all are shown.
+        """
+        here = next(iter(cars.values()))
+        second = self._record.at(here.at_s)
+        camera = Camera(here.x_m, here.y_m, here.heading_deg - 90, METRES_PER_PIXEL)
+        picture, pen = self._scene(canvas.scale, area, camera, LENGTHWISE, second)
+        self._traffic(pen, second, but=EGO)
+        for colour, sample in [*cars.items()][::-1]:
+            pen.vehicle(_car(sample), colour)
+        canvas.picture(area, picture.reduce(FINE), RADIUS)
+        side = area.height - 20
+        self._inset(canvas, Rect(area.right - side - 10, area.y + 10, side, side), camera, second, pen.colours)
+        for number, (colour, sample) in enumerate(cars.items()):
+            x, y = (round(value / (FINE * canvas.scale)) for value in pen.view.pixel(sample.x_m, sample.y_m))
+            label = Rect(area.x + min(x, area.width - side - 80) - 66, area.y + y + (18, -50)[number % 2], 116, 32)
+            canvas.box(label, NIGHT.background, 8)
+            canvas.text(label, amount_of_speed(sample.speed_kmh, sample.speed_unit), Type.STRONG, colour, "centre")
+
+    def _scene(
+        self, scale: float, area: Rect, camera: Camera, place: tuple[float, float], second: Second | None
+    ) -> tuple[Image.Image, _Pen]:
+        """Ground and lanes, by day or night; the camera's point is at that share of the width and height."""
+        dark = second is None or second.sun_deg is None or second.sun_deg < SUNSET_DEG
+        colours = NIGHTLY if dark else DAILY
+        width, height = _pixels(area, scale)
+        picture = Image.new("RGB", (width, height), colours.land)
+        view = View(camera, scale * FINE / METRES_PER_PIXEL, width * place[0], height * place[1])
         pen = _Pen(ImageDraw.Draw(picture), view, colours, FINE * scale)
+        self._grounds.paint(pen.brush, view, (width, height), colours.ground, FINE)
+        self._ground(pen, view.sight(width, height), second)
+        return picture, pen
+
+    def _traffic(self, pen: _Pen, second: Second | None, but: str = "") -> None:
+        """Incidents and vehicles, the car under test on top."""
+        if second is None:
+            return
+        for kind, x_m, y_m in second.incidents:
+            pen.incident(kind, x_m, y_m)
+        for vehicle in sorted(second.vehicles, key=lambda vehicle: vehicle.vehicle_id == EGO):
+            if vehicle.vehicle_id != but:
+                pen.vehicle(vehicle)
+
+    def _inset(self, canvas: Canvas, inset: Rect, camera: Camera, second: Second | None, colours: Colours) -> bool:
+        """The streets around, a dot for each vehicle, turned like the picture; false where nothing was recorded."""
+        if second is None:
+            return False
+        size = _pixels(inset, canvas.scale)
+        picture = Image.new("RGB", size, colours.land)
+        view = View(camera, size[0] / WIDE_M, size[0] / 2, size[1] / 2)
+        pen = _Pen(ImageDraw.Draw(picture), view, colours, FINE * canvas.scale)
         self._grounds.paint(pen.brush, view, size, colours.ground, FINE)
         for lane in self._record.shapes.lanes:
             pen.band(lane.line_m, 9.0, colours.road)
         for vehicle in sorted(second.vehicles, key=lambda vehicle: vehicle.vehicle_id == EGO):
             pen.dot(vehicle)
-        return picture.reduce(FINE)
+        canvas.box(inset.inset(-2), NIGHT.pressed, RADIUS - 2)
+        canvas.picture(inset, picture.reduce(FINE), RADIUS - 4)
+        return True
 
     def _ground(self, pen: _Pen, sight: Polygon, second: Second | None) -> None:
         shapes = self._record.shapes
@@ -170,10 +207,32 @@ class RoadPainter:
                     pen.stop_line(lane.line_m, lane.width_m, _brightest(states))
 
 
+def draw_road_sign(canvas: Canvas, box: Rect, here: Sample) -> None:
+    """The road's name and its limit."""
+    name = here.road or "an unnamed road"
+    canvas.box(box, NIGHT.surface, 12)
+    canvas.text(Rect(box.x + 14, box.y, box.width - 82, box.height), name, Type.STRONG, NIGHT.text)
+    if here.limit_kmh is not None:
+        _limit_sign(canvas, Rect(box.right - 54, box.y + 2, 48, 48), here.limit_kmh, here.speed_unit)
+
+
+def _limit_sign(canvas: Canvas, rect: Rect, limit_kmh: float, unit: str) -> None:
+    white: Colour = (255, 255, 255)
+    canvas.disc(rect, white)
+    canvas.disc(rect.inset(2), (200, 22, 30))
+    canvas.disc(rect.inset(8), white)
+    canvas.text(rect, amount_of_speed(limit_kmh, unit).split()[0], Type.STRONG, (10, 10, 10), "centre")
+
+
 def _pixels(area: Rect, scale: float) -> tuple[int, int]:
     """Fine pixels of a picture that fills the area."""
     left, top, right, bottom = area.edges(scale)
     return (right - left) * FINE, (bottom - top) * FINE
+
+
+def _car(here: Sample) -> SeenVehicle:
+    """The car under test where it was then."""
+    return SeenVehicle(EGO, "passenger", 4.5, 1.8, here.x_m, here.y_m, here.heading_deg, 0.0, 0)
 
 
 def _brightest(states: Iterable[str]) -> str:
@@ -227,10 +286,10 @@ class _Pen:
             self.brush.ellipse((x - 1.5 * r, y - 1.5 * r, x + 1.5 * r, y + 1.5 * r), (255, 255, 255))
         self.brush.ellipse((x - r, y - r, x + r, y + r), NIGHT.accent if is_ego else self.colours.vehicle)
 
-    def vehicle(self, vehicle: SeenVehicle) -> None:
-        """Its outline from above with its lights, nose forward."""
+    def vehicle(self, vehicle: SeenVehicle, ego: Colour = NIGHT.accent) -> None:
+        """Its outline from above with its lights, nose forward; the car under test in a colour of its own."""
         is_ego = vehicle.vehicle_id == EGO
-        fill = NIGHT.accent if is_ego else self.colours.heavy if vehicle.kind in HEAVY else self.colours.vehicle
+        fill = ego if is_ego else self.colours.heavy if vehicle.kind in HEAVY else self.colours.vehicle
         if vehicle.kind == "emergency":
             fill = BLUE if vehicle.signals & SumoSignal.BLUE else (235, 235, 240)
         least_m = LEAST_PX * self.unit / self.view.per_metre

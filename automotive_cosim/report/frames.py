@@ -11,15 +11,15 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageOps
 
+from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import NIGHT
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.formats.files import drafted
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
 from automotive_cosim.run.observer import Shot
-from automotive_cosim.run.words import action_in_words
 
 BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
 AFTER_EVERY_S = 1.0
@@ -145,9 +145,9 @@ def why(result: EpisodeResult) -> str:
 
 def save_animation(path: Path, pictures: Sequence[Image.Image], milliseconds: Sequence[int]) -> None:
     """Writes an animated WebP completely or not at all."""
-    with drafted(path) as draft:
+    with drafted(path) as file:
         pictures[0].save(
-            draft,
+            file,
             format="WEBP",
             save_all=True,
             append_images=list(pictures[1:]),

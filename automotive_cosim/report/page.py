@@ -12,8 +12,10 @@ from PIL import Image
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import FILM, PAGE, screenshot
+from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.report.playback import open_picture
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
@@ -52,7 +54,7 @@ def write_page(folder: Path) -> Path:
         parts=PARTS,
         plots={"wide": Plot(*drive, 960, 300), "narrow": Plot(*drive, 420, 280)},
         steps=_steps(folder),
-        film=embedded(film.read_bytes()) if film.is_file() else None,
+        film=embedded(read_bytes(film)) if film.is_file() else None,
         versions=sorted(manifest["versions"].items()),
     )
     page = folder / PAGE
@@ -75,7 +77,7 @@ def _steps(folder: Path) -> list[Json]:
 
 def _picture(path: Path) -> str:
     """A screenshot as a data URL, small enough for a page with all of them."""
-    with Image.open(path) as image:
+    with open_picture(path) as image:
         height = round(image.height * PICTURE_WIDTH / image.width)
         small = image.resize((PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
     data = BytesIO()

@@ -1,8 +1,8 @@
 """The same drive twice: an agent that knows where it is beside the same agent that does not.
 
-``pair.webp`` shows both screens from the hand-over on, and the speeds below; ``pair.html`` is the page with both
-verdicts; ``pair.json`` says the result in a sentence, with both traces' hashes. Both episodes begin at the same
-instant of the same traffic, so what differs is due to the agent.
+``pair.webp`` shows both screens from the hand-over on, both cars on the road, and their speeds; ``pair.html`` is
+the page with both verdicts; ``pair.json`` says the result in a sentence, with both traces' hashes. Both episodes
+begin at the same instant of the same traffic, so what differs is due to the agent.
 """
 
 from __future__ import annotations
@@ -17,9 +17,12 @@ from PIL import Image
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.files import read_bytes
+from automotive_cosim.formats.layout import ROAD as ROAD_FILE
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmplot import speeds_plot
+from automotive_cosim.report.filmroad import RoadPainter, draw_road_sign
 from automotive_cosim.report.frames import (
     AFTER,
     AFTER_MS,
@@ -35,16 +38,19 @@ from automotive_cosim.report.frames import (
 from automotive_cosim.report.page import PARTS, embedded
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
+from automotive_cosim.run.road import EMPTY, read_record
 from automotive_cosim.run.timeline import Sample
 
-WIDTH, HEIGHT = 1280, 836
+WIDTH, HEIGHT = 1280, 968
 SCALE = 0.75
-"""Pixels per unit of the layout: the film has 960 x 627."""
+"""Pixels per unit of the layout: the film has 960 x 726."""
 MARGIN, GAP = 20, 24
 WORDS = Rect(MARGIN, 14, WIDTH - 2 * MARGIN, 52)
 SIDES = Rect(MARGIN, 76, WIDTH - 2 * MARGIN, 500).columns(2, GAP)
 HEAD, NOTES = 44, 108
-PLOT = Rect(MARGIN, 590, WIDTH - 2 * MARGIN, 230)
+ROAD = Rect(MARGIN, 590, WIDTH - 2 * MARGIN, 180)
+SIGN = Rect(ROAD.x + 12, ROAD.y + 12, 320, 52)
+PLOT = Rect(MARGIN, 786, WIDTH - 2 * MARGIN, 166)
 COLOURS: tuple[Colour, Colour] = ((86, 180, 233), (230, 159, 0))
 """Okabe and Ito's sky blue and orange, which most people can distinguish."""
 BEFORE_S = 20.0
@@ -86,7 +92,8 @@ def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
             for side in sides
         ]
         times = sorted({round(frame.at_s, 1) for each in frames for frame in each if frame.at_s <= until_s})
-        pictures = [_compose(at_s, sides, frames, paths, over=at_s == times[-1]) for at_s in times]
+        painter = _painter(sides[0])
+        pictures = [_compose(at_s, sides, frames, paths, painter, over=at_s == times[-1]) for at_s in times]
         acted = {round(step.at_s, 1) for each in frames for step in each if step.milliseconds == STEP_MS}
         shown_ms = [STEP_MS if at_s in acted else AFTER_MS for at_s in times]
         save_animation(film, pictures, [*shown_ms[:-1], LAST_MS])
@@ -99,7 +106,7 @@ def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
         sides=sides,
         outcomes=[outcome(side.result) for side in sides],
         parts=PARTS,
-        film=embedded(film.read_bytes()) if film.is_file() else None,
+        film=embedded(read_bytes(film)) if film.is_file() else None,
         records=[side.folder.relative_to(folder).as_posix() for side in sides],
     )
     write_whole(page, text)
@@ -130,6 +137,12 @@ def _from_hand_over(side: PairSide) -> list[FilmFrame]:
     return frames
 
 
+def _painter(side: PairSide) -> RoadPainter:
+    road = side.folder / ROAD_FILE
+    assert side.frames.map is not None  # there was a hand-over
+    return RoadPainter(read_record(road) if road.is_file() else EMPTY, side.frames.map)
+
+
 def _ends_at(path: Sequence[Sample]) -> str:
     if not path:
         return ""
@@ -147,15 +160,19 @@ def _compose(
     sides: Sequence[PairSide],
     frames: Sequence[Sequence[FilmFrame]],
     paths: Sequence[Sequence[Sample]],
+    painter: RoadPainter,
     *,
     over: bool,
 ) -> Image.Image:
     canvas = Canvas.plain(round(WIDTH * SCALE), round(HEIGHT * SCALE), SCALE, NIGHT.background)
     canvas.text(WORDS, f"The driver: “{sides[0].result.goal}”", Type.TITLE, NIGHT.text)
+    cars: dict[Colour, Sample] = {}
     for box, side, each, path, colour in zip(SIDES, sides, frames, paths, COLOURS, strict=True):
         shown = [frame for frame in each if frame.at_s <= at_s + SAME_TIME_S][-1]
-        here = [sample for sample in path if sample.at_s <= at_s + SAME_TIME_S][-1]
+        here = cars[colour] = [sample for sample in path if sample.at_s <= at_s + SAME_TIME_S][-1]
         _draw_side(canvas, box, side, each[-1] if over else shown, here, colour)
+    painter.draw_lengthwise(canvas, ROAD, cars)
+    draw_road_sign(canvas, SIGN, cars[COLOURS[0]])
     canvas.picture(
         PLOT,
         speeds_plot(

@@ -11,7 +11,9 @@ from PIL import Image
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.layout import STEPS, screenshot
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.run.kept import read_steps
 
 LAST_MS = 3000
@@ -72,11 +74,35 @@ def write_film(shown: list[Frame], path: Path, speed: float) -> None:
     missing = next((frame.picture for frame in shown if not frame.picture.is_file()), None)
     if missing is not None:
         raise UserError(f"{missing} is missing; the record is incomplete")
-    pictures = [Image.open(frame.picture).convert("RGB") for frame in shown]
+    pictures = [open_picture(frame.picture).convert("RGB") for frame in shown]
     stood_ms = [round(1000 * (after.since_s - before.since_s) / speed) for before, after in pairwise(shown)]
-    pictures[0].save(
-        path, save_all=True, append_images=pictures[1:], duration=[*stood_ms, LAST_MS], loop=0, quality=80
-    )
+    durations_ms = [*stood_ms, LAST_MS]
+    with drafted(path) as file:
+        pictures[0].save(
+            file,
+            path.suffix[1:],
+            save_all=True,
+            append_images=pictures[1:],
+            duration=durations_ms,
+            loop=0,
+            quality=80,
+        )
+
+
+def open_picture(path: Path) -> Image.Image:
+    """A picture whose pixels are not read yet.
+
+    Raises:
+        UserError: it cannot be read, or says that it has more than ``bounds.PIXELS``.
+    """
+    try:
+        picture = Image.open(path if path.is_file() else "")
+    except (OSError, Image.DecompressionBombError) as error:
+        raise UserError(f"{path} is no picture that can be read; record the trial again") from error
+    if picture.width * picture.height > bounds.PIXELS:
+        picture.close()
+        raise UserError(f"{path} has over {bounds.PIXELS:,} pixels; a screen has not")
+    return picture
 
 
 def _in_words(action: Json) -> str:

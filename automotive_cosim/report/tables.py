@@ -45,6 +45,10 @@ class Table:
         lines += [_md([str(cell) for cell in row]) for row in self.rows]
         return f"**{self.title}**\n\n" + "\n".join(lines) + (f"\n\n{self.note}" if self.note else "") + "\n"
 
+    def records(self) -> list[dict[str, str]]:
+        """The rows by the names of the columns, for JSON."""
+        return [dict(zip(self.columns, map(str, row), strict=True)) for row in self.rows]
+
     def csv(self) -> str:
         """Comma-separated values, the columns' names first."""
         return csv_text(self.columns, ([str(cell) for cell in row] for row in self.rows))

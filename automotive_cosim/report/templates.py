@@ -9,7 +9,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from automotive_cosim.contracts.plain import rounded
-from automotive_cosim.formats.plain import markup
+from automotive_cosim.formats.plain import markup, plain
 
 _ENVIRONMENT = jinja2.Environment(
     loader=jinja2.PackageLoader("automotive_cosim", ""),
@@ -55,4 +55,4 @@ def render(template: str, **values: object) -> str:
         template: path inside the package, e.g. ``report/page.html``; it extends ``report/base.html``.
         values: what it shows; a missing one is an error, not a gap.
     """
-    return markup(_ENVIRONMENT.get_template(template).render(values))
+    return plain(markup(_ENVIRONMENT.get_template(template).render(values)))

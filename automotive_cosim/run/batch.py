@@ -9,17 +9,18 @@ from __future__ import annotations
 import json
 import time
 from collections import Counter, defaultdict
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Generic
+from typing import Any, Generic, Protocol, TypeVar
 
+from automotive_cosim.contracts import Json
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run import worker
-from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
-from automotive_cosim.run.jobs import failed
+from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker, failed
 from automotive_cosim.run.meter import MeterHandle, Spent
 from automotive_cosim.run.pace import JobTurn, Pace
 from automotive_cosim.run.plan import Plan
@@ -69,6 +70,16 @@ class Progress(Generic[R]):
     """Why the rest is not run; empty if it is run or nothing is left."""
 
 
+class BatchPlan(Protocol):
+    """What a batch runs; ``check`` raises a UserError for what does not exist or is out of range."""
+
+    def check(self) -> None: ...
+
+    def as_json(self) -> Json: ...
+
+    def jobs(self) -> Sequence[Any]: ...
+
+
 def run_plan(
     plan: Plan,
     folder: Path,
@@ -104,15 +115,47 @@ def run_plan(
         opener = partial(worker.trials, pictures, meter)
         limit = meter if budget.is_limited else None
         return run_jobs(
-            jobs, store, opener, failed, executor=executor, retries=retries, limit=limit, budget=budget, tell=tell
+            jobs, store, opener, executor=executor, retries=retries, limit=limit, budget=budget, tell=tell
         )
+
+
+P = TypeVar("P", bound=BatchPlan)
+
+
+@dataclass(frozen=True, slots=True)
+class BatchKind(Generic[P, J, R]):
+    """A kind of batch besides that of an evaluation: what its workers do, and what comes of it."""
+
+    row: type[R]
+    """Kind of its rows."""
+    opener: Opener[J, R]
+    """Makes the runner of each worker."""
+    parts: tuple[str, ...] = ()
+    """Folders in its results folder."""
+    rounds: Callable[[P, Store[R]], Iterator[Sequence[J]]] = lambda plan, store: iter([plan.jobs()])
+    """The jobs to run, and then, by what came of them, more."""
+
+    def run(
+        self,
+        plan: P,
+        folder: Path,
+        *,
+        executor: Executor = Processes(),  # noqa: B008, frozen
+        retries: int = 1,
+        tell: Callable[[Progress[R]], None] = lambda progress: None,
+    ) -> Progress[R]:
+        """Runs the remaining jobs of a plan; arguments and errors are those of ``run_plan``."""
+        plan.check()
+        with opened(folder, plan.as_json(), self.row, self.parts) as store:
+            for jobs in self.rounds(plan, store):
+                end = run_jobs(jobs, store, self.opener, executor=executor, retries=retries, tell=tell)
+        return end
 
 
 def run_jobs(
     jobs: Sequence[J],
     store: Store[R],
     opener: Opener[J, R],
-    failed: Callable[[J, str, str], R],
     *,
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
@@ -126,7 +169,6 @@ def run_jobs(
         jobs: what to run.
         store: where the rows are read and written.
         opener: makes the runner of each worker.
-        failed: makes the row of a job whose worker died, from the job, the kind of error and the reason.
         executor: where to run them.
         retries: how many times a job is retried after an error before its row is written.
         limit: the meter of its budget, if it has one. Once it is spent, the rest is not run.
@@ -136,7 +178,7 @@ def run_jobs(
     Raises:
         as ``run_plan``.
     """
-    batch = _Batch(store, jobs, opener, failed, executor, retries, tell, limit, budget)
+    batch = _Batch(store, jobs, opener, executor, retries, tell, limit, budget)
     try:
         batch.run()
     finally:
@@ -202,7 +244,6 @@ class _Batch(Generic[J, R]):
         store: Store[R],
         jobs: Sequence[J],
         opener: Opener[J, R],
-        failed: Callable[[J, str, str], R],
         executor: Executor,
         retries: int,
         tell: Callable[[Progress[R]], None],
@@ -211,7 +252,6 @@ class _Batch(Generic[J, R]):
     ) -> None:
         self._store = store
         self._opener = opener
-        self._failed = failed
         self._executor = executor
         self._jobs = {job.id: job for job in jobs}
         self._retries = retries
@@ -337,7 +377,7 @@ class _Batch(Generic[J, R]):
         self._places.remove(place)
         place.worker.end(at_once=True)
         if place.job is not None:
-            self._turn_over(place, place.job, self._failed(place.job, kind, why))
+            self._turn_over(place, place.job, failed(place.job, kind, why))
             return
         self._stillborn += 1
         if self._stillborn >= STILLBORN * self._executor.count:
@@ -385,7 +425,7 @@ class _Batch(Generic[J, R]):
         if row.error is not None and row.error_kind in FINAL_KINDS:
             for other in self._alike.pop(job.situation, []):
                 if self._queue.remove(other):
-                    self._ended(other, self._failed(other, row.error_kind, row.error))
+                    self._ended(other, failed(other, row.error_kind, row.error))
 
 
 def note_spent(store: Store[R], meter: MeterHandle) -> None:
@@ -402,11 +442,12 @@ def note_spent(store: Store[R], meter: MeterHandle) -> None:
 
 def spent_before(store: Store[R]) -> Spent:
     """What earlier starts have spent, as they noted it, or at least what their rows say."""
-    rows = store.rows.values()
+    # Without a model of this program's, an agent tells of itself what it has used, and nobody pays for it here.
+    rows = [row for row in store.rows.values() if getattr(row, "model", "none") != "none"]
     tokens = sum(getattr(row, "tokens_in", 0) + getattr(row, "tokens_out", 0) for row in rows)
     usd = sum(getattr(row, "cost_usd", 0.0) for row in rows)
     path = store.folder / SPENT
-    noted = from_json(Spent, json.loads(path.read_text("utf-8"))) if path.is_file() else Spent()
+    noted = from_json(Spent, read_json(path)) if path.is_file() else Spent()
     return Spent(max(tokens, noted.tokens), max(usd, noted.usd))
 
 

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.tasking.catalogue import described
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
@@ -160,7 +161,7 @@ def read(path: Path) -> Difficulties:
     """A record; empty if there is none."""
     if not path.is_file():
         return Difficulties()
-    stored: Mapping[str, Json] = json.loads(path.read_text(encoding="utf-8"))
+    stored: Mapping[str, Json] = read_json(path)
     halves = {
         name: Difficulty(
             row["logits"],

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
+from automotive_cosim.errors import CosimError
 from automotive_cosim.run.meter import MeterHandle, Spent
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
@@ -45,6 +46,10 @@ class Job(Protocol):
     @property
     def wall_s(self) -> float:
         """Limit of its wall time."""
+        ...
+
+    def planned(self) -> JobRow:
+        """Its row, as far as it is known before it runs."""
         ...
 
 
@@ -90,6 +95,38 @@ OSError if something cannot be written.
 
 Opener = Callable[[], AbstractContextManager[Runner[J, R]]]
 """Makes a worker's runner; it is sent to the worker, so it must be a module's function or a partial of one."""
+
+
+def failed(job: Job, kind: str, why: str) -> Any:
+    """The row of a job that ended in an infrastructure error."""
+    return replace(job.planned(), error=why, error_kind=kind)
+
+
+def failed_by(job: Job, error: Exception) -> Any:
+    """The same by an error, of which a fault in this package or in an agent is told by its class too."""
+    name = type(error).__name__
+    return failed(job, name, str(error) if isinstance(error, CosimError) else f"{name}: {error}")
+
+
+def tried(run: Runner[J, R]) -> Runner[J, R]:
+    """A runner whose every error becomes a row, but for files that cannot be written."""
+
+    def row_of(job: J, folder: Path) -> R:
+        try:
+            return run(job, folder)
+        except OSError:
+            raise
+        except Exception as error:  # must not end the others; it is counted and listed
+            row: R = failed_by(job, error)
+            return row
+
+    return row_of
+
+
+@contextmanager
+def alone(run: Runner[J, R]) -> Iterator[Runner[J, R]]:
+    """Makes the runner of a worker whose jobs share nothing."""
+    yield tried(run)
 
 
 class LostError(Exception):

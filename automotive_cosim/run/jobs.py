@@ -310,11 +310,6 @@ TrialJob = EpisodeJob | DriveJob
 """One trial of a plan."""
 
 
-def failed(job: TrialJob, kind: str, why: str) -> EpisodeRow | DriveTrialRow:
-    """The row of a trial that ended in an infrastructure error."""
-    return replace(job.planned(), error=why, error_kind=kind)
-
-
 def file_name(exactly: Iterable[str]) -> str:
     """Readable words, then a digest of everything."""
     exactly = tuple(exactly)

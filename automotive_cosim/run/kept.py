@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from automotive_cosim.cockpit.actions import parse
+from automotive_cosim.cockpit.actions import action_in_words, parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json, read_whole_lines
 from automotive_cosim.formats.layout import PICTURES, ROAD, SCREENSHOTS, STEPS, TRIAL
 from automotive_cosim.interface.trace import element
 from automotive_cosim.run.store import read_trace, trace_file
-from automotive_cosim.run.words import action_in_words
 
 FORMER = ("episode.json", "shown.jsonl")
 """Files in place of ``trial.json`` in what version 0.2 and earlier ones recorded, which this one does not read."""

@@ -28,8 +28,9 @@ from zoneinfo import ZoneInfo
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import read_json, write_whole
+from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.layout import TRACES
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.geo.locate import Geo
 
 PACKAGE = "automotive_cosim."

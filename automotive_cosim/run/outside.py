@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager, suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
@@ -99,6 +100,8 @@ class OutsideAgent:
         self._step_s = step_s
         self._step_left_s = step_s
         self._left_s = self._episode_s = episode_s
+        self._replies: list[ModelReply] = []
+        """What its model said in this turn."""
         self._wire: Wire | None = None
         self._folder: Path | None = None
         self._channels: frozenset[Channel] | None = None
@@ -133,10 +136,12 @@ class OutsideAgent:
             AgentError: its process has failed, ended or hung.
         """
         self.stages, self.answer_s, self._step_left_s = (), 0.0, self._step_s
+        self._replies.clear()
         self._send("seen", observation)
         answer = self._answer()
         is_ours = self._model is not None or is_remote(self.name)  # whose stages are no guest's
-        self.stages = self._read(_stages, answer.get("stages", [])) if is_ours else ()
+        told = answer.get("stages", []) if is_ours else []
+        self.stages = self._read(partial(self._stages, observation.time_s), told)
         if "spent" in answer:
             raise OutOfBudgetError(self._text(answer["spent"]))
         if "refused" in answer:
@@ -180,7 +185,17 @@ class OutsideAgent:
                 self._fail("it asked a model, but has none")
             reply = self._model.chat(self._read(_messages, answer["ask"]))
             self.answer_s += reply.seconds
+            self._replies.append(reply)
             self._send("reply", reply)
+
+    def _stages(self, at_s: float, told: list[Json]) -> tuple[Stage, ...]:
+        """What it tells of its turn. What its model said and cost is known here, and told by nobody else."""
+        stages = _stages(told)
+        if self._model is None:
+            return stages
+        given = iter(self._replies)
+        own = [each if each.reply is None else replace(each, reply=next(given, None)) for each in stages]
+        return (*own, *(Stage(StageName.INTERPRET, each.text, at_s, each) for each in given))
 
     def _received(self) -> Json:
         if self._wire is None:

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 
 from automotive_cosim import scenarios
-from automotive_cosim.agents import MODELLED, AgentSettings, is_remote, make_agent
+from automotive_cosim.agents import MODELLED, Agent, AgentSettings, is_remote, make_agent
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
@@ -27,6 +27,7 @@ from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
+from automotive_cosim.interface.trace import plain
 from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
@@ -158,6 +159,7 @@ class Plan(EvaluationSettings):
             open_scenario(name)
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
+        remote: dict[str, Agent] = {}
         for agent, model, conditions in {(job.setup.agent, job.model, job.setup.conditions) for job in self.jobs()}:
             if agent == HUMAN:
                 raise UserError(
@@ -167,7 +169,9 @@ class Plan(EvaluationSettings):
                 check_agent(agent)
             else:
                 try:
-                    made = make_agent(agent, model, AgentSettings(conditions))
+                    made = remote.get(agent) or make_agent(agent, model, AgentSettings(conditions))
+                    if is_remote(agent):
+                        remote[agent] = made  # its card is the same under all conditions, and may take seconds
                     SessionSetup(frozenset(made.channels), conditions)
                 except SetupError as error:
                     if not dry:
@@ -176,19 +180,25 @@ class Plan(EvaluationSettings):
         return tuple(dict.fromkeys(sorted(lacks)))
 
     def jobs(self) -> tuple[TrialJob, ...]:
-        """Every trial, grouped by warm simulation, in an order from which an agent learns nothing.
+        """Every trial, grouped by warm simulation, then by instance, whose contestants stand next to each other:
+        wherever a run stops, they can be compared on all that is complete.
 
-        Simulations and the trials within each are ordered by hash: first halves do not come before second ones.
+        Simulations, instances and contestants are ordered by hash, from which an agent learns nothing: first halves
+        do not come before second ones.
 
         Raises:
             UserError: there are more than can ever be run.
         """
-        lists = (self.agents, self.models, [*self._placed(), *self._driven()], self.seeds, *lists_of(self).values())
-        if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
+        if (most := self.most_runs()) > MOST_RUNS:
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
         every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives(), *self._single())
         jobs = {job.id: job for job in every if self.split == BOTH or self.split == job.split}
-        return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
+        return tuple(sorted(jobs.values(), key=_place))
+
+    def most_runs(self) -> int:
+        """How many runs it has at most, those of ``trials`` left out, without unfolding it."""
+        lists = (self.agents, self.models, [*self._placed(), *self._driven()], self.seeds, *lists_of(self).values())
+        return prod(map(len, lists)) * self.repeats
 
     def episodes(self) -> tuple[EpisodeJob, ...]:
         """Those of the jobs that are episodes on tasks."""
@@ -302,6 +312,10 @@ class Plan(EvaluationSettings):
                     spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
+
+
+def _place(job: TrialJob) -> tuple[str, str, str]:
+    return digest(job.simulation), digest(plain(job.instance)), digest(job.id)
 
 
 def languages_in_words(codes: Iterable[str]) -> str:

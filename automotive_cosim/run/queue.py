@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Container, Hashable, Iterable, Mapping
+from itertools import count
 from typing import Generic
 
 from automotive_cosim.run.executor import J
@@ -33,14 +34,15 @@ class JobQueue(Generic[J]):
     """Waiting jobs by simulation and kind."""
 
     def __init__(self, jobs: Iterable[J]) -> None:
-        self._groups: dict[SimulationKey, dict[Hashable, deque[J]]] = {}
+        self._groups: dict[SimulationKey, dict[Hashable, deque[tuple[int, J]]]] = {}
+        self._numbers = count()
         self._left: Counter[SimulationKey] = Counter()
         for job in jobs:
             self.put(job)
 
     def put(self, job: J) -> None:
         """Adds a job."""
-        self._groups.setdefault(job.simulation, {}).setdefault(job.kind, deque()).append(job)
+        self._groups.setdefault(job.simulation, {}).setdefault(job.kind, deque()).append((next(self._numbers), job))
         self._left[job.simulation] += 1
 
     def take(
@@ -58,17 +60,19 @@ class JobQueue(Generic[J]):
         if simulation is None:
             return None
         kinds = self._groups[simulation]
-        kind = next((kind for kind in kinds if (kind in timed) is not (simulation == warm)), next(iter(kinds)))
-        job = kinds[kind][0]
+        wanted = [kind for kind in kinds if (kind in timed) is not (simulation == warm)] or list(kinds)
+        _, job = min(kinds[kind][0] for kind in wanted)
         self.remove(job)
         return job
 
     def remove(self, job: J) -> bool:
         """Takes a particular job; false if it is not waiting."""
         kinds = self._groups.get(job.simulation, {})
-        if job not in kinds.get(job.kind, ()):
+        waiting = kinds.get(job.kind, deque())
+        place = next((place for place, (_, each) in enumerate(waiting) if each == job), None)
+        if place is None:
             return False
-        kinds[job.kind].remove(job)
+        del waiting[place]
         if not kinds[job.kind]:
             del kinds[job.kind]
         self._left[job.simulation] -= 1

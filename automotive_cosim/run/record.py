@@ -7,26 +7,35 @@ from __future__ import annotations
 
 import json
 import platform
-import shutil
-import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from datetime import datetime
+from io import FileIO
 from pathlib import Path
-from typing import IO, Protocol
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import write_whole
 from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, screenshot
+from automotive_cosim.formats.writing import (
+    add_line,
+    check_writable,
+    drafted,
+    growing,
+    make_folder,
+    remove,
+    write_whole,
+)
 from automotive_cosim.interface.trace import STATES, digests
 from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.drive import DriveRecord
@@ -38,7 +47,6 @@ from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import STAMPED, installed
-from automotive_cosim.run.words import action_in_words
 
 PICTURE_QUALITY = 85
 LARGE = frozenset({*STATES, "weather", "gps", "connectivity", "events"})
@@ -93,8 +101,8 @@ def check_folder(folder: Path, *, force: bool) -> None:
     if folder.is_dir() and any(folder.iterdir()) and not force:
         raise UserError(f"{folder} is not empty; give --out another folder, or --force to replace the record in it")
     parent = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
-    try:  # a folder may refuse writes despite its permissions
-        tempfile.TemporaryDirectory(dir=parent).cleanup()
+    try:
+        check_writable(parent)
     except OSError as error:
         raise UserError(
             f"cannot write to {parent}: {error.strerror}; give --out a folder that you can write to"
@@ -123,7 +131,7 @@ class Recorder(AnyTrialObserver):
         self._arguments = arguments
         self._whole = whole
         self._collector = Collector(job) if isinstance(job, EpisodeJob) else None
-        self._lines: IO[str] | None = None
+        self._lines: FileIO | None = None
         self._begun_s = 0.0
         self._pictured: tuple[int, npt.NDArray[np.uint8]] | None = None
         """The last picture, and the number of its step."""
@@ -176,7 +184,8 @@ class Recorder(AnyTrialObserver):
         """Removes the folder."""
         self.close()
         if self.folder is not None:
-            shutil.rmtree(self.folder, ignore_errors=True)
+            with suppress(OSError):
+                remove(self.folder)
 
     def _add(self, shot: Shot) -> None:
         """Saves the picture and appends a line; the picture first, so that every line has one."""
@@ -184,8 +193,8 @@ class Recorder(AnyTrialObserver):
             return
         step = shot.step
         if self._pictured is None or shot.screenshot is not self._pictured[1]:
-            path = screenshot(self.folder, step.number)
-            Image.fromarray(shot.screenshot).save(path, quality=PICTURE_QUALITY, subsampling=0)
+            with drafted(screenshot(self.folder, step.number)) as file:
+                Image.fromarray(shot.screenshot).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
             self._pictured = step.number, shot.screenshot
         told, begins = step.as_json(), "hand-over"
         if self._collector is None:
@@ -201,8 +210,7 @@ class Recorder(AnyTrialObserver):
             "sha256": digests(told),
         }
         kept = line if self._whole else {name: value for name, value in line.items() if name not in LARGE}
-        self._lines.write(json.dumps(kept, ensure_ascii=False) + "\n")
-        self._lines.flush()
+        add_line(self._lines, json.dumps(kept, ensure_ascii=False))
 
     def _write(self, told: Json) -> None:
         assert self.folder is not None
@@ -223,7 +231,7 @@ class Recorder(AnyTrialObserver):
         }
 
 
-def _fresh(folder: Path) -> IO[str]:
+def _fresh(folder: Path) -> FileIO:
     """Begins a record, without what an earlier one left in its folder.
 
     Returns:
@@ -232,14 +240,8 @@ def _fresh(folder: Path) -> IO[str]:
     Raises:
         UserError: another record begins there at this instant.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    for path in (folder / name for name in OF_A_TRIAL):
-        if path.is_dir():
-            shutil.rmtree(path)
-        else:
-            path.unlink(missing_ok=True)
-    try:
-        (folder / SCREENSHOTS).mkdir()
-    except FileExistsError:
-        raise UserError(f"another run is writing to {folder}; give --out another folder") from None
-    return (folder / STEPS).open("w", encoding="utf-8", newline="\n")
+    lines = growing(make_folder(folder) / STEPS, anew=True)
+    for name in set(OF_A_TRIAL) - {STEPS}:
+        remove(folder / name)
+    make_folder(folder, SCREENSHOTS)
+    return lines

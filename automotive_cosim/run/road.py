@@ -24,8 +24,6 @@ The file is written during the drive; after a kill, it can be read up to the las
 
 from __future__ import annotations
 
-import gzip
-import zlib
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -43,11 +41,12 @@ from automotive_cosim.contracts import (
     in_drawing_order,
 )
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import MOST_UNPACKED_BYTES, parse_json
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.files import json_lines, open_file, opened
 from automotive_cosim.formats.layout import PICTURES, ROAD
 
 FORMAT = 1
-LONGEST_LINE_BYTES = 2**26
+PACKED = b"\x1f\x8b"
 
 GroundLine = tuple[tuple[float, float], ...]
 
@@ -169,29 +168,18 @@ def read_road(path: Path) -> Iterator[Json]:
         UserError: it cannot be read, or has another format.
     """
     try:
-        with gzip.open(path, "rb") as file:
+        with open_file(path) as file:
+            if (head := file.read(2)) and head != PACKED:
+                raise ValueError("it is not packed")
+        with opened(path, growing=True) as file:
             begun = False
-            for line in _whole_lines(file):
-                entry = parse_json(line)
+            for entry in json_lines(file, bounds.ROAD_VALUES, growing=True):
                 if not begun and entry.get("format") != FORMAT:
                     raise UserError(f"{path} has format {entry.get('format')!r}; this version reads {FORMAT}")
                 begun = True
                 yield entry
-    except (OSError, zlib.error, ValueError, AttributeError) as error:
+    except (OSError, ValueError, AttributeError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
-
-
-def _whole_lines(file: gzip.GzipFile) -> Iterator[bytes]:
-    left = MOST_UNPACKED_BYTES
-    try:
-        while line := file.readline(LONGEST_LINE_BYTES):
-            left -= len(line)
-            if left < 0:
-                raise ValueError(f"it unpacks to over {MOST_UNPACKED_BYTES // 10**6} MB")
-            if line.endswith(b"\n"):
-                yield line
-    except EOFError:
-        return
 
 
 def _points(flat: Sequence[float]) -> GroundLine:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import fcntl
 import gzip
 import json
 import math
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import asdict, dataclass
 from datetime import datetime
+from io import BufferedWriter
 from itertools import pairwise
 from pathlib import Path
-from typing import IO
 
 from shapely import LineString, MultiPoint, Point, Polygon, STRtree
 
@@ -29,8 +27,8 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.judged import JudgedSession
-from automotive_cosim.formats.files import open_file
 from automotive_cosim.formats.layout import ROAD
+from automotive_cosim.formats.writing import growing, make_folder
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.observer import Shot, TrialObserver
@@ -82,7 +80,7 @@ class RoadRecorder(TrialObserver[JudgedSession, object]):
         now_s = shot.step.moment.time_s
         departed_s = session.drive[0].time_s if session.drive else now_s
         self._session = session
-        self._path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(self._path.parent)
         about = self._about | {"goal": session.goal}
         self._writer = RoadWriter(self._path, session.world.traffic, about, now_s)
         for moment, snapshot in self._before:
@@ -136,8 +134,7 @@ class RoadWriter:
             about: what is run, by name.
             begin_s: simulation time from which the file counts.
         """
-        self._raw = path.open("wb")
-        mark_as_written(self._raw)
+        self._raw = BufferedWriter(growing(path, anew=True))
         self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
         self._is_whole = True
         """Whether no line was broken off."""
@@ -292,24 +289,6 @@ class _ShapeIndex:
             for tree in (self._lanes, self._junctions, self._ground)
         )
         return lanes, junctions, ground
-
-
-def is_being_written(path: Path) -> bool:
-    """Whether a running program is writing that file; the system knows, however the program ends."""
-    try:
-        with open_file(path) as file:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:
-        return False
-    return False
-
-
-def mark_as_written(file: IO[bytes]) -> None:
-    """Marks a file as being written, until it is closed or the program ends."""
-    with suppress(OSError):  # some file systems have no locks; there it looks finished
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def along(line: Sequence[tuple[float, float]], position_m: float) -> tuple[float, float]:

@@ -9,25 +9,23 @@ lock              held while an evaluation writes here
 
 from __future__ import annotations
 
-import fcntl
 import gzip
 import json
-import os
 import platform
 import subprocess
-import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
+from io import FileIO
 from pathlib import Path
-from typing import IO, Generic, cast
+from typing import Generic, cast
 
 import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
-from automotive_cosim.formats.files import write_whole
 from automotive_cosim.formats.layout import PICTURES, TRACES
+from automotive_cosim.formats.writing import add_line, growing, locked, make_folder, write_whole
 from automotive_cosim.run.own_code import own_code, own_scenarios
 from automotive_cosim.run.row import R, as_json, from_line
 from automotive_cosim.run.versions import STAMPED, SUITE, installed
@@ -35,8 +33,6 @@ from automotive_cosim.run.versions import STAMPED, SUITE, installed
 FORMAT = 1
 """Format of the folder; any other is refused."""
 ALSO_STAMPED = ("openai", "pyproj", "shapely")
-LOOK_S = 0.05
-"""Longer than a page takes to see whether a folder is locked."""
 
 
 RowKind = type[R] | Callable[[bytes], type[R]]
@@ -46,7 +42,7 @@ RowKind = type[R] | Callable[[bytes], type[R]]
 class Store(Generic[R]):
     """An evaluation's folder, open for writing; ``rows`` are the newest by id."""
 
-    def __init__(self, folder: Path, rows: dict[str, R], lines: IO[bytes]) -> None:
+    def __init__(self, folder: Path, rows: dict[str, R], lines: FileIO) -> None:
         self.folder = folder
         self.rows = rows
         self._lines = lines
@@ -57,13 +53,9 @@ class Store(Generic[R]):
         Raises:
             UserError: it cannot be written, e.g. because the disk is full; earlier lines are kept.
         """
-        whole = self._lines.tell()
         try:
-            self._lines.write(json.dumps(as_json(row), ensure_ascii=False).encode() + b"\n")
-            self._lines.flush()
-            os.fsync(self._lines.fileno())
+            add_line(self._lines, json.dumps(as_json(row), ensure_ascii=False), lasting=True)
         except OSError as error:
-            os.truncate(self._lines.fileno(), whole)
             raise cannot_write(self.folder, error) from error
         self.rows[row.id] = row
 
@@ -94,14 +86,11 @@ def opened(
     """
     _check(folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in parts:
-            (folder / name).mkdir(parents=True, exist_ok=True)
-        with _locked(folder):
+        for name in ("", *parts):
+            make_folder(folder, name)
+        with locked(folder / "lock", f"to {folder}"):
             _manifest(folder, plan, planned, grows=grows)
-            path = folder / "episodes.jsonl"
-            _mend(path)
-            with path.open("ab", buffering=0) as lines:
+            with growing(folder / "episodes.jsonl") as lines:
                 yield Store(folder, read_rows(folder, kind), lines)
     except OSError as error:
         raise cannot_write(folder, error) from error
@@ -199,10 +188,9 @@ def trace_file(folder: Path, episode: str) -> Path:
 
 def write_trace(folder: Path, episode: str, lines: Iterable[Json]) -> None:
     """Writes a trace, completely or not at all; the same lines give the same bytes."""
-    path = trace_file(folder, episode)
-    path.parent.mkdir(exist_ok=True)
+    make_folder(folder, TRACES)
     text = "".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines)
-    write_whole(path, gzip.compress(text.encode(), compresslevel=1, mtime=0))
+    write_whole(trace_file(folder, episode), gzip.compress(text.encode(), compresslevel=1, mtime=0))
 
 
 def read_trace(folder: Path, episode: str) -> list[Json]:
@@ -240,9 +228,8 @@ def keep_files(folder: Path, files: Mapping[str, bytes]) -> None:
         OSError: they cannot be written.
     """
     for name, content in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(path, content)
+        inner, _, file = name.rpartition("/")
+        write_whole(make_folder(folder, inner) / file, content)
 
 
 def megabytes(folder: Path) -> float:
@@ -337,28 +324,3 @@ def _git() -> Json | None:
         return {"commit": ask("rev-parse", "HEAD"), "is_changed": bool(ask("status", "--porcelain", "--", "."))}
     except (OSError, subprocess.CalledProcessError):
         return None
-
-
-def _mend(path: Path) -> None:
-    """Removes an incomplete last line left by a kill."""
-    path.touch()
-    content = path.read_bytes()
-    if content and not content.endswith(b"\n"):
-        os.truncate(path, content.rfind(b"\n") + 1)
-
-
-@contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    """Locks the folder; the system releases the lock however this process ends."""
-    with (folder / "lock").open("w") as file:
-        try:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:  # perhaps a page is checking at this instant whether it is locked
-                time.sleep(LOOK_S)
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise UserError(
-                f"another evaluation is writing to {folder}; wait for it, or give --out another folder"
-            ) from error
-        yield

@@ -6,12 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.interface.trace import Step
-from automotive_cosim.run.words import ROUNDING_KMH, action_in_words, limit_kmh, road_in_words, speed_in_words
+from automotive_cosim.run.words import ROUNDING_KMH, limit_kmh, road_in_words, speed_in_words
 
 QUIET = frozenset({ActionType.WAIT, ActionType.STATUS})
 

@@ -9,13 +9,13 @@ from pathlib import Path
 
 from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
 from automotive_cosim.episode.own_prompt import instructions
-from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.layout import PICTURES
+from automotive_cosim.formats.writing import beneath
 from automotive_cosim.run.drive import run_drive
 from automotive_cosim.run.episode import run_episode
-from automotive_cosim.run.executor import Runner
+from automotive_cosim.run.executor import Runner, failed_by
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import DriveJob, Limits, TrialJob, failed
+from automotive_cosim.run.jobs import DriveJob, Limits, TrialJob
 from automotive_cosim.run.meter import Metered, MeterHandle
 from automotive_cosim.run.moments import write_judged
 from automotive_cosim.run.outside import OutsideAgent, is_outside
@@ -75,15 +75,14 @@ def run_with(
     Raises:
         OSError: trace or pictures cannot be written.
     """
-    recorder = Recorder(job, None if pictures is Pictures.NONE else folder / PICTURES / job.id)
+    kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
+    recorder = Recorder(job, kept)
     try:
         with agent as acting:
             _run(acting, job, recorder, simulations, observers)
-    except CosimError as error:
-        return failed(job, type(error).__name__, str(error))
-    except Exception as error:
-        # A fault in this package must not end the evaluation; it is counted and listed.
-        return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
+    except Exception as error:  # must not end the evaluation; it is counted and listed
+        row: TrialRow = failed_by(job, error)
+        return row
     record = recorder.record
     assert record is not None, "it is over"
     if record.lines:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from automotive_cosim.agents import MODELLED
 from automotive_cosim.contracts import Json
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.report.charts import NEEDS, is_installed
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.plan import PlannedTrial
@@ -33,9 +33,8 @@ def write_findings(folder: Path, found: Hunt, agent: str, model: str, about: Jso
         lines = (json.dumps(row_of(each), ensure_ascii=False) for each in found.tried)
         write_whole(folder / ROWS, "".join(f"{line}\n" for line in lines))
         write_whole(folder / FINDINGS, json.dumps(as_json(found), indent=1, ensure_ascii=False) + "\n")
-        (folder / PLANS).mkdir(exist_ok=True)
         for number, each in enumerate(found.minimal, 1):
-            write_whole(folder / PLANS / f"{number:02d}.toml", suite(found, agent, model, [each]))
+            write_whole(make_folder(folder, PLANS) / f"{number:02d}.toml", suite(found, agent, model, [each]))
         page = folder / PAGE
         write_whole(page, _page(folder, found, agent, model, about))
     except OSError as error:

@@ -16,7 +16,7 @@ from automotive_cosim.formats.toml import dotted
 from automotive_cosim.run import worker
 from automotive_cosim.run.batch import FINAL_KINDS, Progress, note_spent, run_jobs, spent_before
 from automotive_cosim.run.executor import Executor, Runner
-from automotive_cosim.run.jobs import TrialJob, failed
+from automotive_cosim.run.jobs import TrialJob
 from automotive_cosim.run.plan import Plan, PlannedTrial
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.rows import kind_of
@@ -144,7 +144,7 @@ class Trying:
 
         opener = partial(worker.trials, Pictures.NONE, self.limit.meter)
         every = list(jobs.values())
-        run_jobs(every, self.store, opener, failed, executor=self.executor, limit=self.limit, tell=ended)
+        run_jobs(every, self.store, opener, executor=self.executor, limit=self.limit, tell=ended)
 
     def _add(self, trial: PlannedTrial) -> None:
         if trial not in self.plan.trials:

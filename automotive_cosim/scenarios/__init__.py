@@ -5,18 +5,16 @@
         paris_centre.sumocfg     opens in sumo-gui as it is
         ...
 
-reader       ``scenario.toml`` -> ``Scenario``
-wording      an incident in words, as options have it
-opening      a name, a folder, a .sumocfg or a plain network -> Scenario
-foreign      SUMO's own scenarios and networks, run as they are
-relocation   any network at another place on earth
-routes       the ego's route by street name, edge or position, or drawn by seed
-streets      the edges that are open to cars, by street
-check        proves that a scenario does what it says
-picture      draws it
-variant      a copy with another demand
-equilibrium  routes on which nobody would do better alone (gap: how far they are from it; settings)
-optimum      routes with a lower total travel time
+reader      ``scenario.toml`` -> ``Scenario``
+wording     an incident in words, as options have it
+opening     a name, a folder, a .sumocfg or a plain network -> Scenario
+foreign     SUMO's own scenarios and networks, run as they are
+relocation  any network at another place on earth
+routes      the ego's route by street name, edge or position, or drawn by seed
+streets     the edges that are open to cars, by street
+check       proves that a scenario does what it says
+picture     draws it
+variant     a copy with another demand
 """
 
 from typing import TYPE_CHECKING

@@ -13,7 +13,6 @@ from pathlib import Path
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, WeatherAt
-from automotive_cosim.formats.xml import scan
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.scenarios.relocation import zone_of
 from automotive_cosim.scenarios.routes import drawn_trips
@@ -71,9 +70,10 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     reader = NetworkReader(configuration.net)
     vet(configuration.net, reader, FORM)
     network = reader.network()
+    added = _Elements()
     for name in INPUTS[1:]:
         for file in configuration.files.get(name, ()):
-            vet(file)
+            vet(file, added if name == "additional-files" else None)
     network = read_mapped(configuration, network)
     place = NOWHERE if network.unplaced else Atlas().place(*middle(network.map))
     notes = []
@@ -83,7 +83,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
             "--origin LON,LAT gives it a place"
         )
     random_per_km_h = 0.0
-    if not _has_demand(configuration):
+    if "route-files" not in configuration.files and added.names.isdisjoint(TRAVELLERS):
         random_per_km_h = RANDOM_PER_KM_H
         count = vehicles_per_hour(network, random_per_km_h)
         notes.append(f"{path.name} has no traffic of its own: {count:.0f} vehicles per hour are drawn")
@@ -168,12 +168,15 @@ def _about(network: Network, place: Place) -> str:
     return f"{len(network.edges)} edges, {road_km:.1f} km of road; {where}."
 
 
-def _has_demand(configuration: Configuration) -> bool:
-    files = configuration.files
-    return "route-files" in files or any(map(_has_travellers, files.get("additional-files", ())))
+class _Elements:
+    """Reads which elements files have."""
 
+    def __init__(self) -> None:
+        self.names: set[str] = set()
 
-def _has_travellers(file: Path) -> bool:
-    found: set[str] = set()
-    scan(file, lambda element, attributes, line: found.add(element), error=ScenarioError, what="a SUMO file")
-    return not found.isdisjoint(TRAVELLERS)
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        """Takes the start of an element."""
+        self.names.add(name)
+
+    def end(self, name: str) -> None:
+        """Takes its end."""

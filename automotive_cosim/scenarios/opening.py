@@ -7,12 +7,13 @@ from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Ego, Scenario
+from automotive_cosim.formats.xml import read_root
 from automotive_cosim.scenarios.foreign import foreign_scenario, set_aside
 from automotive_cosim.scenarios.reader import load
 from automotive_cosim.scenarios.relocation import at_home, relocated
 from automotive_cosim.scenarios.routes import chosen_trips
 from automotive_cosim.traffic.ground import placed, read_mapped
-from automotive_cosim.traffic.network import Network, root_of
+from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.options import read_configuration
 
 CONFIGURATIONS = ("configuration", "sumoConfiguration")
@@ -110,7 +111,7 @@ def _opened(name: str | Path, *, to_be_moved: bool) -> Scenario:
         return _loaded(name)
     if path.name == "scenario.toml":
         return _loaded(path.parent)
-    root = root_of(path).tag
+    root = read_root(path, error=ScenarioError).tag
     if root == "osm":
         raise ScenarioError(f"{path} is an OpenStreetMap extract; import it first: scenarios import {path}")
     if root != "net" and root not in CONFIGURATIONS:

@@ -16,8 +16,8 @@ from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, QUIET, Camera, View
 from automotive_cosim.cockpit.theme import DAY, Colour, Weight, face, font
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ScenarioError, UserError
-from automotive_cosim.formats.files import drafted
 from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.writing import drafted, make_folder
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.scenarios.labels import GREY, RED, Labels, Points, place_labels
 from automotive_cosim.scenarios.opening import network_of
@@ -126,9 +126,9 @@ def save_picture(scenario: Scenario, path: Path) -> tuple[str, ...]:
     """
     picture, unwritten = draw_scenario(scenario)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with drafted(path) as draft:
-            picture.save(draft, path.suffix[1:].upper(), quality=QUALITY, method=6)
+        make_folder(path.parent)
+        with drafted(path) as file:
+            picture.save(file, path.suffix[1:].upper(), quality=QUALITY, method=6)
     except OSError as error:
         raise UserError(
             f"cannot write {path} ({error.strerror}); give --out a folder that you can write to"

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
 import re
-import shutil
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -12,9 +12,11 @@ from xml.sax.saxutils import quoteattr
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats import files
+from automotive_cosim.formats import bounds, files
 from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.writing import appearing, copy, make_folder, write_whole
 from automotive_cosim.traffic.options import Configuration
+from automotive_cosim.traffic.vetting import files_in
 
 NOT_TAKEN = re.compile(rb"<(stop|person|personFlow|container|containerFlow|ride|walk)[\s/>]")
 """Elements of a demand that a copy cannot take over."""
@@ -23,6 +25,9 @@ DEMAND = re.compile(rb"<(vehicle|trip|flow|person|personFlow|container|container
 
 OF_GIVEN_DEMAND = frozenset({"scale", "device.rerouting.probability", "device.rerouting.explicit"})
 """Options that would change a demand that is complete and keeps its routes."""
+
+MOST_COPIED_BYTES = 2**32
+"""Of all files of a scenario together; the network and the demand of a city take a tenth."""
 
 
 def check_target(target: Path) -> None:
@@ -97,68 +102,93 @@ def write_variant(
 ) -> None:
     """Copies a scenario with another demand; the copy appears whole.
 
-    Of a scenario without ``scenario.toml``, the configuration and its files are copied, and nothing else in their
-    folder: the copy is again a folder with one ``.sumocfg``, whose time of day is its own.
+    Only the files that its configuration names are copied, and those that they name: regular ones, through no link
+    out of its folder; beside them its ``scenario.toml`` and README. Without ``scenario.toml`` the copy is again a
+    folder with one ``.sumocfg``, whose time of day is its own.
 
     Args:
-        target: the copy's folder; what is there is replaced.
+        target: the copy's folder, which is empty or missing.
         scenario: what to copy.
         configuration: its configuration.
         routes: name and text of the file of the new demand.
         record: name and content of a JSON file on how it was made.
         begin_s: when the simulation begins; None keeps it.
         start_hour: local hour of the ego's departure; None keeps it.
+
+    Raises:
+        UserError: the target exists, or a file leads out of the folder or is too large.
+        OSError: a file cannot be read or written.
     """
-    draft = target.with_name(f".{target.name}.part")
-    shutil.rmtree(draft, ignore_errors=True)
-    described = (scenario.folder / "scenario.toml").is_file()
-    if described:
-        shutil.copytree(scenario.folder, draft)
-        inputs = {name: _local(paths, scenario.config.parent) for name, paths in configuration.files.items()}
-        options = {**inputs, **configuration.options}
-        config = scenario.config.name
-    else:
-        draft.mkdir(parents=True)
-        kept = {name: value for name, value in configuration.options.items() if name not in OF_GIVEN_DEMAND}
-        options = {**_copied(configuration, draft), **kept}
-        config = f"{scenario.name}.sumocfg"
-    options.pop("end", None)  # which only spaces out the flows of the old demand
-    (draft / routes[0]).write_text(routes[1], encoding="utf-8")
-    options["route-files"] = routes[0]
-    if begin_s is not None:
-        options["begin"] = f"{begin_s:g}"
-    lines = "".join(f"    <{name} value={quoteattr(value)}/>\n" for name, value in options.items())
-    (draft / config).write_text(f"<configuration>\n{lines}</configuration>\n", encoding="utf-8")
-    if described:
-        toml = draft / "scenario.toml"
-        text = settings(toml.read_text(encoding="utf-8"))
-        if start_hour is not None:
-            start = r"(?m)^(start = \"?\d{4}-\d\d-\d\dT)\d\d:\d\d(:\d\d)?"
-            text = re.sub(start, rf"\g<1>{start_hour:02}:00:00", text)
-        toml.write_text(text, encoding="utf-8")
-    (draft / record[0]).write_text(json.dumps(record[1], indent=1, ensure_ascii=False), encoding="utf-8")
-    shutil.rmtree(target, ignore_errors=True)
-    draft.replace(target)
+    toml = scenario.folder / "scenario.toml"
+    described = toml.is_file()
+    home = scenario.folder if described else configuration.path.absolute().parent
+    with appearing(make_folder(target.parent) / target.name) as draft:
+        config = draft / (scenario.sumo.config if described else f"{scenario.name}.sumocfg")
+        folder = make_folder(draft, config.parent.relative_to(draft).as_posix())
+        dropped = {"end"} if described else OF_GIVEN_DEMAND | {"end"}  # that only spaces out flows
+        options = {name: value for name, value in configuration.options.items() if name not in dropped}
+        inputs = _copied(configuration, home, draft, folder) | {"route-files": routes[0]}
+        if begin_s is not None:
+            options["begin"] = f"{begin_s:g}"
+        lines = (f"    <{name} value={quoteattr(value)}/>\n" for name, value in {**inputs, **options}.items())
+        write_whole(config, f"<configuration>\n{''.join(lines)}</configuration>\n")
+        write_whole(folder / routes[0], routes[1])
+        if described:
+            text = settings(files.read_text(_inside(toml, home)))
+            if start_hour is not None:
+                start = r"(?m)^(start = \"?\d{4}-\d\d-\d\dT)\d\d:\d\d(:\d\d)?"
+                text = re.sub(start, rf"\g<1>{start_hour:02}:00:00", text)
+            write_whole(draft / toml.name, text)
+            if (about := home / "README.md").is_file():  # whose map it is
+                copy(_inside(about, home), draft / about.name, bounds.TEXT_BYTES)
+        write_whole(draft / record[0], json.dumps(record[1], indent=1, ensure_ascii=False))
 
 
-def _copied(configuration: Configuration, folder: Path) -> dict[str, str]:
-    """Copies the files of a configuration, but not its demand; option -> names, separated by commas."""
+def _copied(configuration: Configuration, home: Path, draft: Path, folder: Path) -> dict[str, str]:
+    """Copies the files of a configuration, but not its demand, and those that they name.
+
+    Args:
+        configuration: of the scenario.
+        home: the scenario's folder; a file in it has the same place in the copy.
+        draft: the copy's folder.
+        folder: that of the copy's configuration.
+
+    Returns:
+        Option -> names as the copy's configuration has them, separated by commas.
+    """
+    places: dict[Path, Path] = {}
+    left = MOST_COPIED_BYTES
     inputs: dict[str, str] = {}
-    for option, paths in ({"net-file": (configuration.net,)} | dict(configuration.files)).items():
-        if option != "route-files":
-            names: list[str] = []
-            for path in paths:
+    for option, named in ({"net-file": (configuration.net,)} | dict(configuration.files)).items():
+        if option == "route-files":
+            continue
+        for path in (inner for each in named for inner in (each, *files_in(each))):
+            if path in places:
+                continue
+            if (place := Path(os.path.normpath(path))).is_relative_to(home):
+                inside = make_folder(draft, place.parent.relative_to(home).as_posix())
+                places[path] = inside / place.name
+            elif path in named:
                 taken = (folder / path.name).exists()
-                names.append(f"{option}{len(names)}-{path.name}" if taken else path.name)
-                shutil.copyfile(path, folder / names[-1])
-            inputs[option] = ",".join(names)
+                places[path] = folder / (f"{option}{len(places)}-{path.name}" if taken else path.name)
+            else:
+                raise UserError(
+                    f"{path}, which a file of {configuration.path} names, is not in {home}; put it there"
+                )
+            left -= copy(_inside(path, home), places[path], left)
+        inputs[option] = ",".join(os.path.relpath(places[path], folder) for path in named)
     return inputs
 
 
-def _local(paths: Iterable[Path], folder: Path) -> str:
-    """The files of a configuration, those in its folder relative to it again."""
-    here = folder.absolute()
-    return ",".join(str(path.relative_to(here) if path.is_relative_to(here) else path) for path in paths)
+def _inside(path: Path, home: Path) -> Path:
+    """The path, unless it is in a folder and a link leads it out of there.
+
+    Raises:
+        UserError: one does.
+    """
+    if Path(os.path.normpath(path)).is_relative_to(home) and not path.resolve().is_relative_to(home.resolve()):
+        raise UserError(f"{path} is a link that leads out of {home}; put the file itself there")
+    return path
 
 
 def settings(text: str) -> str:

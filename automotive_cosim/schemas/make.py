@@ -9,6 +9,7 @@ from pathlib import Path
 from automotive_cosim.cockpit import actions
 from automotive_cosim.contracts import Json
 from automotive_cosim.formats.schema import documented
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.geo.rulefile import RuleFile
 from automotive_cosim.publish.contents import Contents
 from automotive_cosim.run.episode import EpisodeSetup
@@ -39,7 +40,7 @@ def main() -> None:
     """Writes the schema of every user-written format."""
     for name in FORMATS:
         path = Path(__file__).with_name(f"{name}{SUFFIX}")
-        path.write_text(made(name), encoding="utf-8")
+        write_whole(path, made(name))
         print(path)
 
 

@@ -2,7 +2,6 @@
 
 records    finds recorded episodes and evaluations in the folders given, and reads nothing outside them
 content    what the pages show of them, as plain values
-decisions  the same of a study's decisions
 catalogue  the same of tasks and scenarios
 play       lets a person work the cockpit in real time
 person     the person as the agent of an episode, and the screen that an act shows at once

@@ -13,22 +13,21 @@ from automotive_cosim.drives.faults import OUTCOMES, WHY_VOID, times, was
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD
+from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED
+from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.extensions import kind_of
 from automotive_cosim.run.kept import READ, is_trial, read_steps, read_trial, trace_of
 from automotive_cosim.run.road import FORMAT, read_road
-from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, trace_file
 from automotive_cosim.safety.page import PAGE
-from automotive_cosim.serve.decisions import decision_map, decisions, drives_under_way
 from automotive_cosim.serve.observers import StudyObservers
 from automotive_cosim.serve.records import NotHereError, RecordEntry, RecordFolders
-from automotive_cosim.studies.live import WATCHED
 
 HEAD = (
     *("task", "half", "scenario", "agent", "model", "seed", "success", "steps", "sim_seconds", "end", "error"),
@@ -58,6 +57,13 @@ class Content:
     def runs(self) -> Json:
         """All records, the newest first, each on one line."""
         return {"records": [_safely(entry, self._line) for entry in self.records.entries()]}
+
+    def first_page(self) -> str:
+        """The part of the address after ``#`` of what to show at first: a pair that was run last, else the list."""
+        for entry in self.records.entries()[:2]:
+            if other := self.records.beside(entry):
+                return f"#/beside/{entry.id}/{other}"
+        return ""
 
     def run(self, name: str, episode: str | None = None) -> Json:
         """One recorded trial, or one of an evaluation, without its steps.
@@ -178,16 +184,21 @@ class Content:
                     found[half] = {"run": entry.id, "episode": episode, "steps": told}
         return {"halves": found}
 
-    def decisions(self, name: str) -> Json:
-        """Every decision of a study of rerouting.
+    def study(self, name: str, part: str, *items: str) -> Json:
+        """A part of a study, of those that its kind has for pages.
 
         Raises:
             UserError: it is not here, or cannot be read.
         """
-        return decisions(self._study(name))
+        folder = self._study(name)
+        kind = kind_of(read_manifest(folder)["plan"])
+        shown = None if kind is None else kind.shown(part, folder, *items)
+        if shown is None:
+            raise NotHereError(f"record {name!r} has no such page")
+        return shown
 
     def watched_study(self, name: str) -> Json:
-        """The drives of a study that are running, which it reports while somebody asks for them.
+        """The drives of a study that are running, the newest first; it reports them while somebody asks.
 
         Raises:
             UserError: it is not here.
@@ -195,15 +206,13 @@ class Content:
         folder = self._study(name)
         with suppress(NotHereError):  # it is older
             self.observers.observe(self.records.file(self.records.entry(name), LIVE, WATCHED))
-        return drives_under_way(folder)
-
-    def decision_map(self, name: str, decision: str) -> Json:
-        """The routes of a decision's futures on one map.
-
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
-        return decision_map(self._study(name), decision)
+        found = [path.parent for path in (folder / LIVE).glob(f"*/{ROAD}") if is_being_written(path)]
+        found.sort(key=lambda each: each.stat().st_mtime, reverse=True)
+        return {
+            "name": folder.name,
+            "running": is_being_written(folder / "lock"),
+            "drives": [each.name for each in found],
+        }
 
     # --- inside -----------------------------------------------------------------------------------------------
 
@@ -219,7 +228,7 @@ class Content:
             told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
             told["is_search"] = (entry.folder / PAGE).is_file()
             return {**shared, **told}
-        return shared | self._head(self.records.trial(entry, None))
+        return {**shared, "beside": self.records.beside(entry), **self._head(self.records.trial(entry, None))}
 
     def _head(self, folder: Path) -> Json:
         """What is known about a trial, also of one that is running or was killed."""

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
-from automotive_cosim.run.road_recorder import mark_as_written
+from automotive_cosim.formats.writing import mark_as_written
 
 PATIENCE_S = 10.0
 """An observer that has not asked for this long has left."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import LIVE, PICTURES, screenshot
+from automotive_cosim.formats.layout import LIVE, PAIR, PICTURES, screenshot
 from automotive_cosim.run import kept
 
 DEPTH = 3
@@ -79,6 +79,12 @@ class RecordFolders:
             NotHereError: it is not below the folders given.
         """
         return self.entry(_id(folder.resolve()))
+
+    def beside(self, entry: RecordEntry) -> str | None:
+        """Id of the other run of a pair, to the one that knows its place; None where there is none."""
+        known, withheld = PAIR
+        other = entry.folder.with_name(withheld)
+        return _id(other) if entry.folder.name == known and kept.is_trial(other) else None
 
     def file(self, entry: RecordEntry, *parts: str) -> Path:
         """A file of a record.

@@ -14,21 +14,25 @@ import mimetypes
 import re
 import secrets
 import socket
-from collections.abc import Callable, Mapping
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from http import HTTPStatus
-from http.cookies import CookieError, SimpleCookie
+from http.client import LineTooLong
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
+from typing import IO, Any
 from urllib.parse import parse_qs, unquote, urlsplit
 
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.formats.files import parse_json
+from automotive_cosim.formats.files import parse_json, read_bytes
 from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
@@ -52,6 +56,12 @@ ALONE = (
 """The policy of a page from a file, which anybody may have made."""
 MOST_BYTES = 10_000
 """Longest request body that is read."""
+MOST_HEAD_BYTES = 2**15
+"""Longest request line and headers."""
+MOST_CONNECTIONS = 256
+"""At once, each with a thread. One more ends the oldest of those who have shown the least."""
+STRANGER_S = 10.0
+"""How long a connection may stay without a request that has the token."""
 WAIT_S = 1.0
 """How long an answer waits for something to happen in a game."""
 SMALL_BYTES = 1000
@@ -109,6 +119,7 @@ class Site:
         self._game = game
         self._study = study
         self._content = Content(RecordFolders(folders))
+        self.first_page = self._content.first_page
         static = Path(str(files("automotive_cosim.serve") / "static"))
         self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
         run, episode = r"(?P<run>[0-9a-f]{12})", r"(?:/episodes/(?P<episode>[\w.+-]+))?"
@@ -120,15 +131,15 @@ class Site:
                 (r"/static/(?P<name>[\w.-]+)", lambda path, _: self._file(path["name"])),
                 (r"/api/study", lambda _, __: _json(self._studied.overview())),
                 (r"/api/study/seat", lambda _, query: _json(self._studied.turn(query.get("seat", "")))),
-                (r"/api/study/play", self._scene),
-                (r"/api/study/play/screen", self._screen),
+                (r"/api/study/play", lambda _, query: self._scene(self._seat_of(query), query)),
+                (r"/api/study/play/screen", lambda _, query: _screen(self._seat_of(query))),
             )
         ]
         self._routes: _Routes = [
             (re.compile(pattern), route)
             for pattern, route in (
-                (r"/api/play", self._scene),
-                (r"/api/play/screen", self._screen),
+                (r"/api/play", lambda _, query: self._scene(self._own_game, query)),
+                (r"/api/play/screen", lambda _, __: _screen(self._own_game)),
                 (r"/api/study/rows\.(?P<kind>csv|json)", self._rows),
                 (r"/api/runs", lambda _, __: _json(content.runs())),
                 (rf"/api/runs/{run}{episode}", lambda path, _: _json(content.run(path["run"], path["episode"]))),
@@ -145,11 +156,11 @@ class Site:
                 (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
                 (rf"/api/evaluations/{run}/search\.html", lambda path, _: self._findings(path["run"])),
-                (rf"/api/studies/{run}", lambda path, _: _json(content.decisions(path["run"]))),
+                (rf"/api/studies/{run}", lambda path, _: _json(content.study(path["run"], ""))),
                 (rf"/api/studies/{run}/live", lambda path, _: _json(content.watched_study(path["run"]))),
                 (
-                    rf"/api/studies/{run}/decisions/(?P<decision>[\w.+-]+)",
-                    lambda path, _: _json(content.decision_map(path["run"], path["decision"])),
+                    rf"/api/studies/{run}/(?P<part>\w+)/(?P<item>[\w.+-]+)",
+                    lambda path, _: _json(content.study(path["run"], path["part"], path["item"])),
                 ),
                 (r"/api/tasks", lambda _, __: _json(catalogue.tasks())),
                 (r"/api/tasks/(?P<name>[\w-]+)", lambda path, _: _json(catalogue.task(path["name"]))),
@@ -199,8 +210,9 @@ class Site:
             what = path.rpartition("/")[2]
             if is_study and path.count("/") == 3:
                 return _json(self._take_part(what, query, asked))
-            return self._play(what, self._game_of(query), asked, is_free=is_play)
-        except (UserError, ValueError) as error:
+            game = self._own_game if is_play else self._seat_of(query)
+            return self._play(what, game, asked, is_free=is_play)
+        except (UserError, ValueError, ArithmeticError) as error:
             raise _RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, str(error)) from error
 
     def _play(self, what: str, game: Game, asked: Json, *, is_free: bool) -> WebAnswer:
@@ -248,10 +260,13 @@ class Site:
             raise NotHereError("there is no study here; start `automotive-cosim serve --study FILE`")
         return self._study
 
-    def _game_of(self, query: Mapping[str, str]) -> Game:
-        """The game of a seat of the study; without a seat, that of `--play`."""
-        if "seat" in query:
-            return self._studied.seat(query["seat"]).game
+    def _seat_of(self, query: Mapping[str, str]) -> Game:
+        """The game of a participant, who is never given another one."""
+        return self._studied.seat(query.get("seat", "")).game
+
+    @property
+    def _own_game(self) -> Game:
+        """The owner's game."""
         if self._game is None:
             raise NotHereError("playing is off here; start `automotive-cosim serve --play`")
         return self._game
@@ -261,23 +276,16 @@ class Site:
             return _json(self._studied.export())
         return WebAnswer(self._studied.as_csv().encode(), "text/csv")
 
-    def _scene(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
+    def _scene(self, game: Game, query: Mapping[str, str]) -> WebAnswer:
         """The newest scene, or after a while the same one if nothing happens."""
-        game = self._game_of(query)
         scene = game.scene(_number(query), WAIT_S) if "seen" in query else game.scene()
         shown = {"version": scene.version, "state": scene.state, "progress": scene.progress, "error": scene.error}
         shown |= {"practice": scene.is_practice, "paused": scene.is_paused, "speed": scene.speed}
         shown |= {"look": scene.look, "told": scene.told}
-        if "seat" not in query:
+        if game is self._game:
             record = None if scene.folder is None else self._content.records.of(scene.folder).id
             shown |= {"record": record, "episode": scene.episode}
         return _json(shown)
-
-    def _screen(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
-        screen = self._game_of(query).scene().screen
-        if not screen:
-            raise NotHereError("there is no screen now")
-        return WebAnswer(screen, "image/jpeg")
 
     def _file(self, name: str) -> WebAnswer:
         if name not in self._static:
@@ -288,13 +296,17 @@ class Site:
         """The page of a search."""
         records = self._content.records
         page = records.file(records.entry(name), PAGE)
-        return WebAnswer(page.read_bytes(), "text/html", is_alone=True)
+        return WebAnswer(read_bytes(page), "text/html", is_alone=True)
 
     def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         records = self._content.records
         entry = records.entry(path["run"])
         picture = records.picture(entry, records.trial(entry, path["episode"]), int(path["step"]))
-        return WebAnswer(picture.read_bytes(), "image/jpeg", 60)
+        return WebAnswer(read_bytes(picture), "image/jpeg", 60)
+
+
+_RANKS = {Visitor.PERSON: 1, Visitor.OWNER: 2}
+"""Whose connections are ended last."""
 
 
 class WebServer(ThreadingHTTPServer):
@@ -335,11 +347,51 @@ class WebServer(ThreadingHTTPServer):
             why = getattr(error, "strerror", None) or str(error)
             raise UserError(f"cannot listen on {host} port {port}: {why}; give another --host or --port") from error
         self.names = own_names(host)
+        self._held: dict[socket.socket, tuple[int, float]] = {}
+        """Rank and time of each connection: 0 before it has shown a token."""
+        self._holding = threading.Lock()
+
+    def verify_request(self, request: Any, client_address: Any) -> bool:
+        """Makes room for a connection, or refuses it if all others have shown as much as can be."""
+        with self._holding:
+            if len(self._held) >= MOST_CONNECTIONS:
+                oldest = min(self._held, key=self._held.__getitem__)
+                if self._held[oldest][0] == max(_RANKS.values()):
+                    return False
+                self._end(oldest)
+            self._held[request] = 0, time.monotonic()
+        return True
+
+    def note(self, request: socket.socket, visitor: Visitor) -> None:
+        """A connection has shown a token."""
+        with self._holding:
+            if request in self._held:
+                self._held[request] = _RANKS[visitor], time.monotonic()
+
+    def service_actions(self) -> None:
+        """Ends connections that have shown nothing for too long, whatever comes on them."""
+        late_s = time.monotonic() - STRANGER_S
+        with self._holding:
+            for request, (rank, since_s) in [*self._held.items()]:
+                if not rank and since_s < late_s:
+                    self._end(request)
+
+    def _end(self, request: socket.socket) -> None:
+        """Wakes the thread of a connection, which closes it."""
+        del self._held[request]
+        with suppress(OSError):
+            request.shutdown(socket.SHUT_RDWR)
+
+    def shutdown_request(self, request: Any) -> None:
+        """Closes a connection."""
+        with self._holding:
+            self._held.pop(request, None)
+        super().shutdown_request(request)
 
     @property
     def address(self) -> str:
         """The address to open in a browser, including the token."""
-        return self._address(self.token, "")
+        return self._address(self.token, self.site.first_page())
 
     @property
     def people_address(self) -> str:
@@ -359,27 +411,62 @@ class WebServer(ThreadingHTTPServer):
         """Prints nothing: a browser that disconnects is not an error."""
 
 
+class _Heads:
+    """What comes on a connection, of which only so much may be lines of a head."""
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._file = file
+        self.left = MOST_HEAD_BYTES
+
+    def readline(self, size: int = -1, /) -> bytes:
+        """A line of a head.
+
+        Raises:
+            LineTooLong: the head is longer than it may be.
+        """
+        line = self._file.readline(min(size, self.left + 1) if size >= 0 else self.left + 1)
+        self.left -= len(line)
+        if self.left < 0:
+            raise LineTooLong("head")
+        return line
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._file, name)
+
+
 class _RequestHandler(BaseHTTPRequestHandler):
     """Handles one HTTP request."""
 
-    protocol_version = "HTTP/1.1"
+    protocol_version = default_request_version = "HTTP/1.1"
     server_version, sys_version = "automotive-cosim", ""
     timeout = 60
     disable_nagle_algorithm = True
     """A body does not wait until the browser has acknowledged the headers."""
 
+    def setup(self) -> None:
+        """Reads heads up to their longest."""
+        super().setup()
+        self.rfile = _Heads(self.rfile)  # type: ignore[assignment, arg-type]
+
+    def handle_one_request(self) -> None:
+        """Begins with another head."""
+        self.rfile.left = MOST_HEAD_BYTES  # type: ignore[attr-defined]
+        try:
+            super().handle_one_request()
+        except LineTooLong:
+            self.requestline = self.command = ""
+            self.request_version = self.protocol_version
+            self.send_error(HTTPStatus.REQUEST_URI_TOO_LONG)
+            self.close_connection = True
+
     def do_GET(self) -> None:
         """Answers, or sends the reason for refusing."""
-        try:
+        with self._refusing(is_data=self.path.startswith("/api/")):
             path, query, visitor = self._request()
             if query.get("token"):
-                self._welcome(path, query["token"])
+                self._welcome(query["token"])
                 return
             self._send(HTTPStatus.OK, self._web.site.answer(path, query, visitor))
-        except _RefusedRequestError as refusal:
-            is_data = self.path.startswith("/api/")
-            why = _json({"error": str(refusal)}) if is_data else WebAnswer(f"{refusal}\n".encode(), "text/plain")
-            self._send(refusal.status, why)
 
     def do_HEAD(self) -> None:
         """The same without a body."""
@@ -387,17 +474,28 @@ class _RequestHandler(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         """Does something in a game; nothing else here can be changed."""
-        try:
+        with self._refusing(is_data=True):
             path, query, visitor = self._request()
             if self.headers.get("Origin") is None:
                 raise _RefusedRequestError(HTTPStatus.FORBIDDEN, "only the pages themselves may do this")
             length = self.headers.get("Content-Length", "")
-            if not length.isdecimal() or int(length) > MOST_BYTES:
+            if not re.fullmatch("[0-9]{1,9}", length) or int(length) > MOST_BYTES:
                 raise _RefusedRequestError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"give at most {MOST_BYTES} bytes")
             self._send(HTTPStatus.OK, self._web.site.change(path, query, self.rfile.read(int(length)), visitor))
-        except _RefusedRequestError as refusal:
-            self.close_connection = True  # the body may not have been read
-            self._send(refusal.status, _json({"error": str(refusal)}))
+
+    @contextmanager
+    def _refusing(self, *, is_data: bool) -> Iterator[None]:
+        """Answers with the reason whatever is refused, or cannot be answered as it came."""
+        try:
+            yield
+        except OSError:  # the connection has gone
+            raise
+        except Exception as error:
+            refused = isinstance(error, _RefusedRequestError)
+            status = error.status if isinstance(error, _RefusedRequestError) else HTTPStatus.BAD_REQUEST
+            why = str(error) if refused else f"this cannot be answered: {type(error).__name__}"
+            self.close_connection |= self.command == "POST"  # the body may not have been read
+            self._send(status, _json({"error": why}) if is_data else WebAnswer(f"{why}\n".encode(), "text/plain"))
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 (its name in the base class)
         """Silences the base class, which would print every request."""
@@ -426,26 +524,24 @@ class _RequestHandler(BaseHTTPRequestHandler):
         given = query.get("token") or self._cookie()
         for token, visitor in ((self._web.token, Visitor.OWNER), (self._web.people_token, Visitor.PERSON)):
             if hmac.compare_digest(given.encode(), token.encode()):
+                self._web.note(self.connection, visitor)
                 return unquote(parts.path), query, visitor
         raise _RefusedRequestError(
             HTTPStatus.FORBIDDEN, "the token is missing or wrong; open the address that the server printed"
         )
 
     def _cookie(self) -> str:
-        try:
-            found = SimpleCookie(self.headers.get("Cookie", "")).get(self._cookie_name)
-        except CookieError:
-            return ""
-        return found.value if found else ""
+        pairs = (pair.strip().partition("=") for pair in self.headers.get("Cookie", "").split(";"))
+        return next((value for name, _, value in pairs if name == self._cookie_name), "")
 
     @property
     def _cookie_name(self) -> str:
         return f"automotive_cosim_{self._web.server_port}"
 
-    def _welcome(self, path: str, token: str) -> None:
-        """Swaps the token in the address for a cookie."""
+    def _welcome(self, token: str) -> None:
+        """Swaps the token in the address for a cookie; the browser keeps the page after the ``#``."""
         self.send_response(HTTPStatus.SEE_OTHER)
-        self.send_header("Location", path if path.startswith("/") and not path.startswith("//") else "/")
+        self.send_header("Location", "/")
         cookie = f"{self._cookie_name}={token}; HttpOnly; SameSite=Strict; Path=/"
         self.send_header("Set-Cookie", cookie)
         self._end(b"")
@@ -468,6 +564,13 @@ class _RequestHandler(BaseHTTPRequestHandler):
         self.end_headers()
         if self.command != "HEAD":
             self.wfile.write(body)
+
+
+def _screen(game: Game) -> WebAnswer:
+    screen = game.scene().screen
+    if not screen:
+        raise NotHereError("there is no screen now")
+    return WebAnswer(screen, "image/jpeg")
 
 
 def _start(game: Game, asked: Json) -> None:

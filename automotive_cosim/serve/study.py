@@ -11,7 +11,6 @@ starts again, and the export says so.
 from __future__ import annotations
 
 import json
-import os
 import secrets
 import threading
 import time
@@ -25,7 +24,8 @@ from typing import Any
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.csvs import csv_text
-from automotive_cosim.formats.files import parse_json
+from automotive_cosim.formats.files import read_whole_lines
+from automotive_cosim.formats.writing import add_line, growing
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.store import opened
@@ -231,10 +231,8 @@ class PeopleStudy:
     def _note(self, kind: str, job: EpisodeJob, values: Json | None = None) -> None:
         event = {"at": datetime.now().astimezone().isoformat(timespec="milliseconds"), "kind": kind, "id": job.id}
         event |= values or {}
-        with self._log.open("a", encoding="utf-8", newline="\n") as file:
-            file.write(json.dumps(event) + "\n")
-            file.flush()
-            os.fsync(file.fileno())
+        with growing(self._log) as file:
+            add_line(file, json.dumps(event), lasting=True)
         self._events.append(event)
 
     def _of(self, kind: str, job: EpisodeJob) -> list[Json]:
@@ -269,18 +267,14 @@ PARTS = ("goal", "clean", "safe", "in_time", "declared")
 
 
 def _read(path: Path) -> list[Json]:
-    """The whole lines of a log; a last one that a kill cut short is removed.
+    """The whole lines of a log.
 
     Raises:
         UserError: another line cannot be read.
     """
     if not path.is_file():
         return []
-    content = path.read_bytes()
-    whole = content[: content.rfind(b"\n") + 1]
-    if whole != content:
-        os.truncate(path, len(whole))
     try:
-        return [parse_json(line) for line in whole.splitlines()]
-    except ValueError as error:
+        return read_whole_lines(path)
+    except (OSError, ValueError) as error:
         raise UserError(f"cannot read {path}: {error}") from error

@@ -1,29 +1,33 @@
-"""Studies: how much rerouting gains, from futures forked from identical traffic.
+"""Studies of traffic, a wing of its own: the package knows nothing of it (``run.extensions``).
 
-plan       what a study runs: scenario, departures, seeds, shares, news, policies
-drive      one drive with its decision points, and the branches forked there
-futures    drives what follows from a decision, several futures at the same time
-looks      drives to the next decision
-whole      whole drives under a policy
-together   many cars take the other route at once
-points     the futures of one decision
-compare    compares two futures of one instant
-traffic    whether the traffic still flows, or is excluded as gridlocked
-driver     lets an agent at the cockpit decide
-policies   the deciding rules, and their results
-batch      drives in parallel, resumed, until the interval is narrow enough
-content    what every study's folder holds
-results    reads stored results, as data frames
-intervals  means with bootstrap intervals over seeds
-everyone   how an effect is spread over everyone
-suite      the same study on several networks
-demand     how far the demand is from an equilibrium
-data       every future as a row, as files
-tracks     where the ego was in every future
-decisions  every decision on a page
-tables, effects, context, charts, page    the report
-warnings   what to read before its figures
-congestion the delay of a network before and after a measure
-pages      the report of either
-versions   compares two runs of one study
+reroute      how much rerouting gains, from futures forked from identical traffic
+congestion   the delay of a network before and after a measure
+days         advice from day to day until traffic settles
+equilibrium  routes on which nobody would do better alone, and routes with a lower total travel time
+calibration  a demand that carries counts
+calls        what they call in the process of a simulation
+commands     their commands
+extension    what the package is told of them
+
+settings     what can be set about a study
+content      what every study's folder holds
+intervals    means with bootstrap intervals over seeds
+gridlock     whether the traffic still flows, or is excluded as gridlocked
+shown        the report of a study of a whole network
+versions     compares two runs of one study
 """
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from automotive_cosim.studies.reroute.results import load_study
+
+__all__ = ["load_study"]
+
+
+def __getattr__(name: str) -> object:
+    if name == "load_study":  # loaded on first use: the command line reads the settings alone
+        from automotive_cosim.studies.reroute.results import load_study
+
+        return load_study
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

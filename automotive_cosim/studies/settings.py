@@ -8,9 +8,7 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.contracts import OLDEST_NEWS_S, Json
-from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Option
-from automotive_cosim.formats.options import option
 from automotive_cosim.formats.scenario import Scenario
 
 CarShare = Annotated[float, Ge(0), Le(1)]
@@ -43,17 +41,6 @@ class TrafficSettings:
         """The plan as a JSON object, for the manifest."""
         values = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
         return {"study": self.kind} | values
-
-    def check_lists(self) -> None:
-        """Checks that no list has a value twice.
-
-        Raises:
-            UserError: one has.
-        """
-        for name in self.sets:
-            values = getattr(self, name)
-            if len(set(values)) < len(values):
-                raise UserError(f"{option(type(self), name)} lists a value twice: {', '.join(map(str, values))}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

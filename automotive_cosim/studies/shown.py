@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from automotive_cosim.contracts import Json
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.store import cannot_write
+from automotive_cosim.studies.content import StudyContent
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,22 +32,14 @@ class ShownStudy:
     """By name."""
 
 
-def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, errors: int, missing: int) -> Path:
+def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:
     """Writes ``report.html``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
-
-    Args:
-        folder: the study's.
-        shown: what to show.
-        plan: the study's plan.
-        manifest: with its starts.
-        errors: number of infrastructure errors.
-        missing: number of jobs of the plan that have not run yet.
 
     Raises:
         UserError: they cannot be written.
     """
+    plan, folder = study.plan, study.folder
     try:
-        write_files(folder, shown.tables, shown.plots.values())
         text = render(
             "studies/network.html",
             title=shown.title,
@@ -55,12 +48,14 @@ def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, err
             warnings=shown.warnings,
             tables=shown.tables,
             plots=shown.plots,
-            errors=errors,
-            missing=missing,
-            plan=plan,
-            starts=manifest["starts"],
+            errors=len(study.errors),
+            missing=len(plan.jobs()) - len(study.rows),
+            plan=plan.as_json(),
+            starts=study.manifest["starts"],
         )
-        write_whole(folder / "report.html", text)
+        with drafted(folder / "report.html") as file:
+            write_files(folder, shown.tables, shown.plots.values())
+            file.write(text.encode())
     except OSError as error:
         raise cannot_write(folder, error) from error
     return folder / "report.html"

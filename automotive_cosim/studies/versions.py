@@ -16,12 +16,12 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.run.row import JobRow, steady
 from automotive_cosim.run.store import read_manifest
-from automotive_cosim.studies.congestion.results import CongestionStudy, delay_h, read_congestion
+from automotive_cosim.studies.congestion.results import CongestionStudy, delay_h
 from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import seed_mean
-from automotive_cosim.studies.results import Study, read_study
+from automotive_cosim.studies.reroute.results import Study
+from automotive_cosim.studies.reroute.tables import NONE, groups, told, told_mean
 from automotive_cosim.studies.settings import CongestionSettings
-from automotive_cosim.studies.tables import NONE, groups, told, told_mean
 
 AnyStudy = Study | CongestionStudy
 
@@ -89,7 +89,7 @@ def _pair(name: str, first: Path, second: Path) -> Pair:
     kinds = [read_manifest(folder)["plan"].get("study") for folder in (first, second)]
     if kinds[0] != kinds[1]:
         raise UserError(f"{first} is a study of {kinds[0]}, {second} one of {kinds[1]}; give two of one kind")
-    read: Callable[[Path], AnyStudy] = read_congestion if kinds[0] == CongestionSettings.kind else read_study
+    read: Callable[[Path], AnyStudy] = CongestionStudy.read if kinds[0] == CongestionSettings.kind else Study.read
     return Pair(name, read(first), read(second))
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.formats.files import without_collection
+from automotive_cosim.formats.xml import without_collection
 from automotive_cosim.tasking.instance import instances
 from automotive_cosim.tasking.own_files import VARIABLE, line_of, own_files, shipped_files, shipped_tasks, tasks_of
 from automotive_cosim.tasking.parameters import FromCockpit, names

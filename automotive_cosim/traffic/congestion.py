@@ -2,8 +2,9 @@
 
 Speeds are weighted by vehicles and smoothed over about a signal cycle: a red light is not a jam, and an empty edge
 is free. They count as a share of the limit in force, lane by lane: a lower limit is no jam, and traffic that was
-held back by a variable sign is not slow once that shows more. The route's sums are recomputed with each sample;
-evaluating them at a position costs a few additions.
+held back by a lower limit is not slow once that has ended. Who wants to drive slower than the limit, or cannot go
+as fast, counts as a share of that speed where there is a lane to pass. The route's sums are recomputed with each
+sample; evaluating them at a position costs a few additions.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
 from typing import Protocol, TypeAlias
@@ -19,6 +20,7 @@ from typing import Protocol, TypeAlias
 from automotive_cosim.contracts import OLDEST_NEWS_S, IncidentKind, Limit, RoadAhead, RoadIncident, TrafficLight
 from automotive_cosim.traffic.network import Crossing, Edge, Network
 from automotive_cosim.traffic.records import make_ahead
+from automotive_cosim.traffic.sumo import THE_LIMIT, DesiredSpeed
 
 SAMPLE_PERIOD_S = 10.0
 """Time between samples of all edges."""
@@ -58,11 +60,29 @@ Tally: TypeAlias = tuple[int, float]
 NOTHING: Tally = (0, 0.0)
 
 
+@dataclass(frozen=True, slots=True)
+class Free:
+    """What a drive without traffic is like."""
+
+    top_mps: float
+    """How fast the ego drives at most."""
+    across: Mapping[str, tuple[str, float]]
+    """The edge before each lane through a junction, and the speed of that lane in m/s."""
+
+
 class Flow(Protocol):
     """Gives the speeds of the traffic."""
 
     def speed_mps(self, edge_id: str) -> float:
         """Mean speed on an edge, never 0."""
+        ...
+
+    def free_mps(self, edge_id: str) -> float:
+        """The speed on an edge without traffic."""
+        ...
+
+    def across(self, edge_id: str) -> float:
+        """The speed through the junction at the end of an edge divided by that without traffic; never 0."""
         ...
 
     def slow_edges(self) -> tuple[tuple[str, float], ...]:
@@ -76,20 +96,23 @@ class Congestion:
     def __init__(
         self,
         network: Network,
-        vehicles: Callable[[], Iterable[tuple[str, float]]],
+        vehicles: Callable[[], Iterable[tuple[str, float, DesiredSpeed]]],
         variable: Collection[str] = (),
+        free: Free | None = None,
     ) -> None:
         """Starts at free flow.
 
         Args:
             network: the network.
-            vehicles: the lane, inside a junction or not, and the speed in m/s of each vehicle that drives as cars
-                do; those on lanes that are closed to cars are left out here.
-            variable: edges on which SUMO itself changes the limit.
+            vehicles: the lane, inside a junction or not, the speed in m/s and the wanted speed of each vehicle that
+                drives as cars do; those on lanes that are closed to cars are left out here.
+            variable: edges on which the limit may change.
+            free: what a drive without traffic is like. None leaves junctions out, and counts all by the limits.
         """
         self._edges = network.edges
         self._order = {edge_id: number for number, edge_id in enumerate(network.edges)}
         self._driving = vehicles
+        self._free = free
         self._variable = frozenset(variable)
         self._vehicles: dict[str, float] = {}
         """Smoothed number of vehicles and sum of speeds, for each edge with recent traffic."""
@@ -105,20 +128,25 @@ class Congestion:
         keep, vehicles, flow, edges = self._keep, self._vehicles, self._flow, self._edges
         lanes: dict[str, Tally] = {}
         seen: dict[str, Tally] = {}
-        for lane_id, speed_mps in self._driving():
+        across = {} if self._free is None else self._free.across
+        for lane_id, speed_mps, wanted in self._driving():
             edge_id = lane_id.rpartition("_")[0]
             edge = edges.get(edge_id)
             if edge is not None and lane_id in edge.lane_ids:
-                limit_mps = edge.lane_mps[edge.lane_ids.index(lane_id)]
-                if limit_mps != edge.speed_mps:
-                    speed_mps *= edge.speed_mps / limit_mps
-                for name, rows in ((lane_id, lanes), (edge_id, seen)):
-                    count, total_mps = rows.get(name, NOTHING)
-                    rows[name] = (count + 1, total_mps + speed_mps)
+                speed_mps = self._rated_mps(edge_id, speed_mps, edge.lane_mps[edge.lane_ids.index(lane_id)], wanted)
+                count, total_mps = lanes.get(lane_id, NOTHING)
+                lanes[lane_id] = (count + 1, total_mps + speed_mps)
+            elif lane_id in across:
+                edge_id, limit_mps = across[lane_id]
+                speed_mps = self._rated_mps(edge_id, speed_mps, limit_mps, wanted)
+            else:
+                continue
+            count, total_mps = seen.get(edge_id, NOTHING)
+            seen[edge_id] = (count + 1, total_mps + speed_mps)
         slow: list[tuple[str, float]] = []
         for edge_id in {**vehicles, **seen}:
             count, total_mps = seen.get(edge_id, NOTHING)
-            free_mps = edges[edge_id].speed_mps
+            free_mps = self.free_mps(edge_id)
             if edge_id in self._variable and free_mps != self._free_mps.setdefault(edge_id, free_mps):
                 self._take_limit(edge_id, free_mps)
             weight = vehicles[edge_id] = vehicles.get(edge_id, 0.0) * keep + count * (1 - keep)
@@ -129,6 +157,16 @@ class Congestion:
                 del vehicles[edge_id], flow[edge_id]
         self._samples.append(lanes)
         self._slow = tuple(sorted(slow, key=lambda row: self._order[row[0]]))
+
+    def _rated_mps(self, edge_id: str, speed_mps: float, limit_mps: float, wanted: DesiredSpeed) -> float:
+        """What a speed on a lane is on the edge's fastest lane, for somebody who wants to drive at the limit."""
+        if self._free is None:
+            free_mps = self._edges[edge_id].speed_mps
+            return speed_mps if limit_mps == free_mps else speed_mps * (free_mps / limit_mps)
+        can_pass = len(self._edges[edge_id].lane_ids) > 1
+        factor, top_mps = wanted if can_pass else THE_LIMIT
+        share = speed_mps / min(factor * limit_mps, top_mps, self._free.top_mps)
+        return min(1.0, share) * self.free_mps(edge_id)
 
     def _take_limit(self, edge_id: str, limit_mps: float) -> None:
         """Rates what was driven on an edge by a higher limit, as if it had been in force."""
@@ -157,9 +195,18 @@ class Congestion:
                 sums[lane_id] = (before[0] + vehicles, before[1] + total_mps)
         return sums
 
+    def free_mps(self, edge_id: str) -> float:
+        """The speed on an edge without traffic."""
+        limit_mps = self._edges[edge_id].speed_mps
+        return limit_mps if self._free is None else min(self._free.top_mps, limit_mps)
+
+    def across(self, edge_id: str) -> float:
+        """See ``Flow``."""
+        return 1.0 if self._free is None else self.relative_speed(edge_id)
+
     def speed_mps(self, edge_id: str) -> float:
         """Mean speed on an edge."""
-        now_mps = self._edges[edge_id].speed_mps
+        now_mps = self.free_mps(edge_id)
         free_mps = min(now_mps, self._free_mps.get(edge_id, now_mps))
         vehicles, flow_mps = self._vehicles.get(edge_id, 0.0), self._flow.get(edge_id, 0.0)
         driven_mps = min(free_mps, (flow_mps + FREE_WEIGHT * free_mps) / (vehicles + FREE_WEIGHT))
@@ -167,7 +214,7 @@ class Congestion:
 
     def relative_speed(self, edge_id: str) -> float:
         """Mean speed divided by the edge's limit; 1 is free flow."""
-        return self.speed_mps(edge_id) / self._edges[edge_id].speed_mps
+        return self.speed_mps(edge_id) / self.free_mps(edge_id)
 
     def slow_edges(self) -> tuple[tuple[str, float], ...]:
         """See ``Flow``; to a hundredth, in the network's order, as of the last sample."""
@@ -182,6 +229,7 @@ class _Leg:
     start_m: float
     """From the start of the route."""
     speed_mps: float
+    free_mps: float
     relative_speed: float
     time_after_s: float
     """Travel time from its end to the destination at present speeds; the next is at the limits."""
@@ -265,7 +313,7 @@ class Route:
         left_m = max(0.0, self.length_m - position_m)
         on_edge_m = max(0.0, leg.start_m + leg.edge.length_m - position_m)
         eta_s = on_edge_m / leg.speed_mps + leg.time_after_s
-        free_s = on_edge_m / leg.edge.speed_mps + leg.free_after_s
+        free_s = on_edge_m / leg.free_mps + leg.free_after_s
         next_sign = bisect_right(self._signs, position_m, key=lambda each: each[0])
         sign_m, sign = self._signs[next_sign] if next_sign < len(self._signs) else (None, None)
         return make_ahead(
@@ -306,20 +354,22 @@ def _legs(
         after = legs[-1] if legs else None
         way = ways[index] if after else Crossing(0.0, edge.speed_mps)
         way_s = way.length_m / max(SLOWEST_MPS, way.speed_mps)
-        speed_mps = flow.speed_mps(edge.edge_id)
+        speed_mps, free_mps = flow.speed_mps(edge.edge_id), flow.free_mps(edge.edge_id)
+        across_s = way_s / flow.across(edge.edge_id)
         legs.append(
             _Leg(
                 edge=edge,
                 start_m=starts_m[index],
                 speed_mps=speed_mps,
-                relative_speed=speed_mps / edge.speed_mps,
-                time_after_s=way_s + after.time_after_s + after.edge.length_m / after.speed_mps if after else 0.0,
-                free_after_s=way_s + after.free_after_s + after.edge.length_m / after.edge.speed_mps
+                free_mps=free_mps,
+                relative_speed=speed_mps / free_mps,
+                time_after_s=across_s + after.time_after_s + after.edge.length_m / after.speed_mps
                 if after
                 else 0.0,
+                free_after_s=way_s + after.free_after_s + after.edge.length_m / after.free_mps if after else 0.0,
                 next_limit=_next_limit(edge, after),
                 tunnel_m=None if after is None else after.start_m if after.edge.in_tunnel else after.tunnel_m,
-                jam=_jam(edge, starts_m[index], speed_mps / edge.speed_mps, after),
+                jam=_jam(edge, starts_m[index], speed_mps / free_mps, after),
                 exit_m=_exit(edge, starts_m[index], after, network),
             )
         )

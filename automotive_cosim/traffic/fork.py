@@ -10,11 +10,11 @@ import os
 import sys
 import threading
 from collections import Counter, OrderedDict
-from collections.abc import Iterator, Sequence
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 from automotive_cosim.contracts import (
     Answer,
@@ -27,18 +27,20 @@ from automotive_cosim.contracts import (
     RouteOption,
 )
 from automotive_cosim.errors import NO_FORK, SetupError, TrafficError
-from automotive_cosim.formats.incidents import Closure, Incident
 from automotive_cosim.formats.scenario import Scenario
-from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
+from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
-from automotive_cosim.traffic.chance import Fresh, Trial
-from automotive_cosim.traffic.divert import Edges
-from automotive_cosim.traffic.flow import Advice, FlowSummary, SignalControl
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
 from automotive_cosim.traffic.steering import KEEPS_ROUTE
 from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_snapshot, unpack_state
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.running import Running
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class Forked:
@@ -79,7 +81,6 @@ class Forked:
         setup = Setup(scenario, seed, allow_unprojected, outputs, flow_s)
         self._source: _Source = _Source(setup, timeout_s, progress, None if alike is None else alike._source)
         self._is_closed = False
-        self._fresh: Fresh | None = None
 
     def depart(self, plan: EgoPlan) -> RemoteTraffic:
         """Starts the ego in an exact copy of the warm traffic.
@@ -95,40 +96,27 @@ class Forked:
             raise TrafficError("the simulation is closed")
         return self._source.departed(plan)
 
-    def keep_ledger(self, *, consumptions: bool = False, tracks: bool = False) -> None:
-        """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
+    def call(self, call: Callable[Concatenate[Running, P], T], *arguments: P.args, **named: P.kwargs) -> T:
+        """Calls a function in the warm process itself, so that every copy made later has what it did.
 
         Args:
-            consumptions: also of what every vehicle emits and consumes.
-            tracks: also of where the ego is.
-        """
-        self._source.warm_call("keep_ledger", consumptions, tracks)
-
-    def run_on(self, duration_s: float) -> TrafficSummary:
-        """Lets the traffic with its ledger run, so that later drives depart later; returns its state.
+            call: a module's function, which is sent by its name, of what runs there and the arguments.
+            arguments: its further arguments.
+            named: the same.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
         """
-        summary: TrafficSummary = self._source.warm_call("run_on", duration_s)
-        return summary
+        answer: T = self._source.warm_call("call", call, arguments, named)
+        return answer
 
-    def fresh(self) -> Fresh:
-        """How copies of this traffic get random numbers of their own, proven here at the first call."""
-        if self._fresh is None:
-            try:
-                self._fresh = Fresh.proven(*(self._source.sampled(seed) for seed in (1, 1, 2)))
-            except (SetupError, TrafficError):  # the copy may have died of it
-                self._fresh = Fresh.JITTER
-        return self._fresh
-
-    def copy(self) -> RemoteFlow:
-        """A copy of the traffic with its ledger, without an ego.
+    def copy(self) -> RemoteCopy:
+        """A copy of the traffic without an ego.
 
         Raises:
             TrafficError: the simulation died or hung.
         """
-        return self._source.flowing()
+        return self._source.without_ego()
 
     @property
     def memory_bytes(self) -> int:
@@ -141,17 +129,75 @@ class Forked:
         self._source.close()
 
 
-class RemoteTraffic:
+class _Remote:
+    """A copy in a process of its own."""
+
+    def __init__(self, process: RemoteProcess) -> None:
+        self._process = process
+        self._is_busy = False
+
+    @property
+    def pid(self) -> int:
+        """The process that runs it."""
+        return self._process.pid
+
+    def call(self, call: Callable[Concatenate[Running, P], T], *arguments: P.args, **named: P.kwargs) -> T:
+        """Calls a function in this copy; arguments and errors are those of ``Forked.call``."""
+        answer: T = self._process.call("call", call, arguments, named)
+        return answer
+
+    def begin(self, call: Callable[Concatenate[Running, P], object], *arguments: P.args, **named: P.kwargs) -> None:
+        """Begins to call a function that takes long and drives on; ``ended`` gives its answer.
+
+        Raises:
+            TrafficError: it died.
+        """
+        self._process.send("run", call, arguments, named)
+        self._is_busy = True
+
+    def ended(self, progress: WarmUpProgress | None = None) -> Any:
+        """Waits for the answer to what was begun.
+
+        Args:
+            progress: called with how much the function said to be done, and of how much.
+
+        Raises:
+            TrafficError: SUMO stopped at an error, died or hung.
+        """
+        state, answer = self._process.receive(progress)
+        self._is_busy = False
+        self._drove_on(state)
+        return answer
+
+    def close(self) -> None:
+        """See ``Traffic.close``; what was begun is not waited for."""
+        if self._is_busy:
+            self._process.kill()
+        self._process.close()
+
+    def _drove_on(self, state: Packed | None) -> None:
+        """Takes the ego's state after a long call."""
+
+
+class RemoteCopy(_Remote):
+    """A copy of the warm traffic without an ego, from that instant on."""
+
+    def __init__(self, process: RemoteProcess, outputs: Path | None) -> None:
+        super().__init__(process)
+        self.outputs = outputs
+        """Folder of SUMO's own outputs, complete when this is closed; None without any."""
+
+
+class RemoteTraffic(_Remote):
     """One drive in a process of its own."""
 
     def __init__(self, source: _Source, process: RemoteProcess, state: Packed) -> None:
+        super().__init__(process)
         self._source = source
-        self._process = process
         self._state = unpack_state(state)
         self._started_s: float | None = None
         self.is_steered = False
         """Whether a request since this copy was made has changed anything in the simulation."""
-        self._is_settling = False
 
     @property
     def network(self) -> RoadNetwork:
@@ -162,11 +208,6 @@ class RemoteTraffic:
     def state(self) -> DrivingState:
         """The newest state."""
         return self._state
-
-    @property
-    def pid(self) -> int:
-        """The process that runs it."""
-        return self._process.pid
 
     def start(self, duration_s: float) -> None:
         if self._started_s is None:
@@ -201,135 +242,13 @@ class RemoteTraffic:
         self._source.shapes = shapes
         return shapes
 
-    def own_choice(self) -> tuple[str, ...]:
-        """The route that SUMO's rerouting device would take now, from the present edge."""
-        with closing(self.branch()) as copy:
-            edges: tuple[str, ...] = copy._process.call("own_choice")
-            return edges
-
-    def others(self) -> tuple[tuple[str, ...], TrafficSummary]:
-        """The other vehicles on the road or due, and the state of the traffic, in a simulation with a ledger."""
-        seen: tuple[tuple[str, ...], TrafficSummary] = self._process.call("others")
-        return seen
-
-    def account(self) -> Account:
-        """Figures of the ego's drive so far, in a simulation with a ledger."""
-        account: Account = self._process.call("account")
-        return account
-
-    def renew(self, fresh: Fresh, seed: int) -> None:
-        """Gives everything from here on other random numbers; the same seed gives the same ones."""
-        self._process.call("renew", fresh, seed)
-
-    def divert(self, old: Edges, new: Edges, share: float, seed: int) -> tuple[tuple[str, ...], int]:
-        """Sends a share of the other cars another way, see ``divert.divert``."""
-        outcome: tuple[tuple[str, ...], int] = self._process.call("divert", old, new, share, seed)
-        return outcome
-
-    def shut(self, edge: str) -> None:
-        """Closes a road for good; the others go round it, the ego once its driver sees the sign.
-
-        Raises:
-            ScenarioError: there is no such edge for cars.
-        """
-        self._process.call("stage", Closure(edge=edge))
-
-    def begin_settling(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> None:
-        """Lets the simulation run until the ego's drive has ended and a share of each group has arrived.
-
-        From then on it reads nothing but the drive, so its state knows of no other vehicles, signals or delays.
-
-        Args:
-            groups: ids of vehicles, from ``others``.
-            share: the share, 0 to 1.
-            limit_s: limit of simulated seconds.
-
-        Raises:
-            TrafficError: it died.
-        """
-        self._process.send("settle", groups, share, limit_s)
-        self._is_settling = True
-
-    def settled(self, progress: WarmUpProgress | None = None) -> Settled:
-        """Waits for the end of what ``begin_settling`` began.
-
-        Args:
-            progress: called with the number of vehicles that have arrived of those to wait for, and of these.
-
-        Raises:
-            TrafficError: SUMO stopped at an error, died or hung.
-        """
-        state, settled = self._process.receive(progress)
-        self._is_settling = False
-        self._state = unpack_state(state)
-        outcome: Settled = settled
-        return outcome
-
-    def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
-        """Both of these, one after the other."""
-        self.begin_settling(groups, share, limit_s)
-        return self.settled()
-
     def branch(self) -> RemoteTraffic:
         """An exact copy that is independent from this instant, even if this one is closed."""
         return self._source.branched(self._process, self._state)
 
-    def close(self) -> None:
-        """See ``Traffic.close``; what it is settling is not waited for."""
-        if self._is_settling:
-            self._process.kill()
-        self._process.close()
-
-
-class RemoteFlow:
-    """A copy of the warm traffic in a process of its own, without an ego, from that instant on."""
-
-    def __init__(self, process: RemoteProcess, outputs: Path | None) -> None:
-        self._process = process
-        self.outputs = outputs
-        """Folder of SUMO's own outputs, complete when this is closed; None without any."""
-
-    def apply(self, measure: Incident | Advice | SignalControl, seed: int) -> None:
-        """Takes a measure now; the times of incidents count from the end of the warm-up.
-
-        Args:
-            measure: what to do.
-            seed: who is advised.
-
-        Raises:
-            ScenarioError: it does not fit the network.
-        """
-        match measure:
-            case Advice():
-                self._process.call("advise", measure, seed)
-            case SignalControl():
-                self._process.call("control", measure)
-            case Incident():
-                self._process.call("stage", measure)
-
-    def begin(self, duration_s: float, every_s: float) -> None:
-        """Lets it run; both times are multiples of the step, and the first is one of the second.
-
-        Raises:
-            TrafficError: it died.
-        """
-        self._process.send("flow", duration_s, every_s)
-
-    def ended(self, progress: WarmUpProgress | None = None) -> tuple[FlowSummary, ...]:
-        """Waits for the end; returns the traffic at the beginning and at the end of every period.
-
-        Args:
-            progress: called with the simulated seconds that have passed, and their total.
-
-        Raises:
-            TrafficError: SUMO stopped at an error, died or hung.
-        """
-        summaries: tuple[FlowSummary, ...] = self._process.receive(progress)
-        return summaries
-
-    def close(self) -> None:
-        """Ends the process."""
-        self._process.close()
+    def _drove_on(self, state: Packed | None) -> None:
+        assert state is not None
+        self._state = unpack_state(state)
 
 
 class _Source:
@@ -373,11 +292,11 @@ class _Source:
             raise
         return RemoteTraffic(self, process, state)
 
-    def flowing(self) -> RemoteFlow:
+    def without_ego(self) -> RemoteCopy:
         """A copy without an ego."""
         with self._lock:
             process = self._copied()
-            return RemoteFlow(process, self._outputs_of(self._drives))
+            return RemoteCopy(process, self._outputs_of(self._drives))
 
     def branched(self, process: RemoteProcess, state: DrivingState) -> RemoteTraffic:
         """A drive that continues from where another one is."""
@@ -389,14 +308,6 @@ class _Source:
         answer = self._warm.call(name, *arguments)
         self._warm_calls.append((name, arguments))
         return answer
-
-    def sampled(self, seed: int) -> Trial:
-        """What a seed makes of a copy of the warm traffic."""
-        with self._lock:
-            copy = self._copied()
-        with closing(copy):
-            sample: Trial = copy.call("prove_fresh", seed)
-            return sample
 
     def close(self) -> None:
         """Ends the warm process."""
@@ -438,8 +349,7 @@ class _Source:
         outputs = self._setup.outputs
         if outputs is None:
             return self._setup
-        (outputs / name).mkdir(parents=True, exist_ok=True)
-        return replace(self._setup, outputs=outputs / name)
+        return replace(self._setup, outputs=make_folder(outputs, name))
 
     def _next_outputs(self) -> Path | None:
         self._drives += 1

@@ -39,6 +39,9 @@ KINDS = {
 AREAS_LIMIT = 20_000
 """Of more areas the largest are shown."""
 
+CLOSES_EDGE, CLOSES_LANE = "closingReroute", "closingLaneReroute"
+"""Parts of a rerouter that keep vehicles out."""
+
 
 def read_mapped(configuration: Configuration, read: Network | None = None) -> Network:
     """The network of a configuration with what is around its roads, and which of them rerouters close to cars.
@@ -51,15 +54,17 @@ def read_mapped(configuration: Configuration, read: Network | None = None) -> Ne
         ScenarioError: a file is missing or invalid; a polygon with its line.
     """
     network = read or read_network(configuration.net)
-    closed: set[str] = set()
+    closed: dict[str, set[str]] = {CLOSES_EDGE: set(), CLOSES_LANE: set()}
 
     def take(element: str, attributes: dict[str, str]) -> None:
-        if element == "closingReroute" and closes_to_cars(attributes):
-            closed.add(attributes.get("id", ""))
+        if element in closed and closes_to_cars(attributes):
+            closed[element].add(attributes.get("id", ""))
 
     ground = read_ground(configuration, network.map, take)
-    if closed:
-        network = replace(network, closed_at_times=frozenset(closed & network.edges.keys()))
+    if any(closed.values()):
+        edges, lanes = closed.values()
+        shut = {name for name, edge in network.edges.items() if name in edges or lanes.issuperset(edge.lane_ids)}
+        network = replace(network, closed_at_times=frozenset(shut))
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
 
 
@@ -71,7 +76,7 @@ def placed(network: Network, scenario: Scenario) -> Network:
 
 
 def closes_to_cars(attributes: dict[str, str]) -> bool:
-    """Whether a ``closingReroute`` keeps cars out; SUMO sends everybody round one that names no classes."""
+    """Whether a part of a rerouter keeps cars out; SUMO sends everybody round one that names no classes."""
     names_none = not (attributes.get("allow") or attributes.get("disallow"))
     return names_none or not open_to_cars(attributes)
 
@@ -94,10 +99,13 @@ def read_ground(
     """
     found: list[GroundArea] = []
     reference = None if roads.projection is None else GeoReference(roads)
-    for file in configuration.files.get("additional-files", ()):
+    files = list(configuration.files.get("additional-files", ()))
+    for file in files:  # which grows
 
         def start(element: str, attributes: dict[str, str], line: int, file: Path = file) -> None:
             also(element, attributes)
+            if element == "include" and (included := file.parent / attributes.get("href", "")) not in files:
+                files.append(included)
             if element != "poly":
                 return
             try:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 from automotive_cosim.contracts import RoadIncident
-from automotive_cosim.formats.incidents import EgoIncident, Incident
+from automotive_cosim.formats.incidents import EgoIncident, Incident, ScriptedVehicle
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.detours import Detours
@@ -83,6 +83,14 @@ class Incidents:
         self._start = plan.start or self._start
         self._trip = plan.trip.name
         self._stage.follow(self._local_time(now_s))
+        for entry in self._entries:  # where they are is told with the ego's own place
+            if (
+                isinstance(entry.incident, ScriptedVehicle)
+                and not entry.has_begun
+                and self._is_due(entry.incident, 0.0)
+            ):
+                entry.has_begun = True
+                entry.staged.begin()
 
     def add(self, incident: Incident) -> None:
         """One more incident; its times count like those of the others.

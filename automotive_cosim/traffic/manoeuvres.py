@@ -1,4 +1,4 @@
-"""Incidents that single vehicles make: by a script, behind the ego, ahead of it and beside it."""
+"""Incidents that single vehicles make: behind the ego, ahead of it and beside it."""
 
 from __future__ import annotations
 
@@ -6,11 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
-from itertools import pairwise
 from typing import NamedTuple
 
 from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
-from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
@@ -52,50 +50,6 @@ PASSED_M = 50.0
 
 CUT_OUT_S = 10.0
 """How long a vehicle that has cut out keeps its new lane."""
-
-
-class StagedVehicle(StagedIncident):
-    """A vehicle that does at given times what it is told."""
-
-    def __init__(self, stage: IncidentStage, incident: incidents.ScriptedVehicle) -> None:
-        self._stage, self._incident = stage, incident
-        self._lane = stage.lane(incident.route[0], incident.lane)
-        for here, there in pairwise(incident.route):
-            stage.edge(there)
-            if there not in stage.network.crossings.get(here, {}):
-                raise ScenarioError(f"[[incidents]]: no road leads from edge {here!r} to {there!r}")
-        self._left = list(incident.actions)
-        self._since_s = incident.from_s
-
-    def begin(self) -> str:
-        incident = self._incident
-        speed = f"{incident.speed_kmh / KMH_PER_MPS:.2f}"
-        self._car = self._stage.car("scripted", incident.route, self._lane, incident.position_m, speed)
-        self._stage.sumo.vehicle.setSpeed(self._car, incident.speed_kmh / KMH_PER_MPS)
-        if self._left:  # until it has done all, it changes the lane only when told
-            self._stage.sumo.vehicle.setLaneChangeMode(self._car, NO_LANE_CHANGE)
-        return ""
-
-    def tick(self, local_time: datetime) -> str:
-        sumo = self._stage.sumo
-        if self._car in sumo.vehicle_ids():
-            while self._left and self._left[0].at_s <= self._since_s:
-                self._act(self._left.pop(0))
-                if not self._left:
-                    sumo.vehicle.setLaneChangeMode(self._car, ANY_LANE_CHANGE)
-        self._since_s += 1.0
-        return ""
-
-    def _act(self, action: incidents.VehicleAction) -> None:
-        sumo, car = self._stage.sumo, self._car
-        if action.speed_kmh is not None:
-            sumo.vehicle.setSpeed(car, action.speed_kmh / KMH_PER_MPS)
-        edge = self._stage.network.edges.get(sumo.edge_of(car))
-        lanes = edge.lane_ids if edge is not None else ()
-        if action.lanes and sumo.lane_of(car) in lanes:
-            from_kerb = -action.lanes if self._stage.network.map.left_hand else action.lanes
-            place = min(max(0, lanes.index(sumo.lane_of(car)) + from_kerb), len(lanes) - 1)
-            sumo.vehicle.changeLane(car, int(lanes[place].rpartition("_")[2]), CUT_OUT_S)
 
 
 class StagedEmergency(StagedIncident):

@@ -8,6 +8,7 @@ junctions get other connections and rights of way than those of the original.
 
 from __future__ import annotations
 
+from codecs import getwriter
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from xml.sax.saxutils import quoteattr
 
 from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic.network import Network, Shape
 
@@ -51,7 +53,8 @@ def write_mirrored(net: Path, target: Path, image: RoadNetwork) -> None:
         ScenarioError: the file is not XML.
     """
     sum_m, lefthand = _sum_m(image), "true" if image.left_hand else "false"
-    with target.open("w", encoding="utf-8") as file:
+    with drafted(target) as written:
+        file = getwriter("utf-8")(written)
 
         def start(name: str, attributes: dict[str, str], line: int) -> None:
             changed = {key: _changed(name, key, value, sum_m) for key, value in attributes.items()}

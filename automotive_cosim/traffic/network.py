@@ -28,7 +28,6 @@ connection.
 from __future__ import annotations
 
 import math
-import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -37,8 +36,7 @@ from typing import TypeAlias
 
 from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, Road, RoadNetwork
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats.files import opened
-from automotive_cosim.formats.xml import scan
+from automotive_cosim.formats.xml import read_root, scan
 from automotive_cosim.traffic import georeference
 from automotive_cosim.traffic.naming import local_names
 from automotive_cosim.traffic.posted import TimedAccess, TimedLimit, timed_access, timed_limits
@@ -381,23 +379,7 @@ def drives_on_left(path: Path) -> bool:
     Raises:
         ScenarioError: the file is missing or not XML.
     """
-    return root_of(path).get("lefthand") in ("true", "1")
-
-
-def root_of(path: Path) -> ET.Element:
-    """The root element of an XML file, gzipped or not, with its attributes but nothing in it.
-
-    Raises:
-        ScenarioError: the file is missing or not XML.
-    """
-    try:
-        with opened(path) as file:
-            root: ET.Element = next(ET.iterparse(file, events=("start",)))[1]
-    except FileNotFoundError as error:
-        raise ScenarioError(f"{path} is missing") from error
-    except (ET.ParseError, OSError, ValueError, LookupError, StopIteration) as error:
-        raise ScenarioError(f"{path} is not XML: {error}") from error
-    return root
+    return read_root(path, error=ScenarioError).get("lefthand") in ("true", "1")
 
 
 def _edge(

@@ -18,10 +18,11 @@ from xml.sax.saxutils import quoteattr
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, Trip
-from automotive_cosim.formats.xml import scan
+from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.formats.xml import read_root, scan
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
-from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_network, root_of
+from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_network
 from automotive_cosim.traffic.redraw import redraw
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vetting import OTHER_EGO, copy_vetted, refuse_variables
@@ -196,7 +197,7 @@ def read_configuration(path: Path) -> Configuration:
     Raises:
         ScenarioError: it is not XML, names no network, or names a missing file.
     """
-    if root_of(path).tag == "net":
+    if read_root(path, error=ScenarioError).tag == "net":
         return Configuration(path, path.absolute(), files={"net-file": (path.absolute(),)})
     reader = _Reader(path)
     scan(path, reader.start, text=reader.text, error=ScenarioError, what="a SUMO configuration")
@@ -392,7 +393,7 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
         wanted = "flow.add.xml"
         begin_s = configuration.begin_s + sumo.warm_up_s
         flows = edge_data(str(setup.outputs / EDGE_FLOWS), begin_s, setup.flow_s)
-        (configuration.folder / wanted).write_text(flows, encoding="utf-8")
+        write_whole(configuration.folder / wanted, flows)
         inputs.setdefault("additional-files", []).append(wanted)
     options |= {name: ",".join(names) for name, names in inputs.items() if names}
     options["seed"] = str(setup.seed)

@@ -6,7 +6,8 @@ The words are OpenStreetMap's (wiki pages "Key:maxspeed" and "Conditional restri
     maxspeed:conditional  40 @ (Mo-Fr 08:00-09:30,14:30-16:00; SH off; PH off)
     access:conditional    no @ (Mo-Fr 07:30-08:30)
 
-Conditions on weekdays, times of day, dates, months and weeks are understood, and ``wet`` and ``snow``, which the
+Conditions on weekdays, times of day, dates, months and weeks are understood (of rules that a semicolon parts, the
+last with a day decides about it, as in OpenStreetMap's opening hours), and ``wet`` and ``snow``, which the
 weather of the drive decides. Public and school holidays (``PH``, ``SH``) are left out of them: there is no calendar
 of holidays, so every Monday is a school day; an import lists them (``names_holidays``). What holds under any other
 condition (axle load, daylight, ...) is omitted and reported.
@@ -25,6 +26,7 @@ _PER_MPS = {"": KMH_PER_MPS, "km/h": KMH_PER_MPS, "mph": MPH_PER_MPS}
 
 _DAYS = ("Mo", "Tu", "We", "Th", "Fr", "Sa", "Su")
 _DAY_MINUTES = 24 * 60
+_WHOLE_DAY = ((0, _DAY_MINUTES),)
 
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 
@@ -42,7 +44,6 @@ _HOLIDAYS = re.compile(rf"{_HOLIDAY}(?:\s*,\s*{_HOLIDAY})*(?:\s+(?!{_DAY}).*)?|{
 """A rule for holidays alone."""
 _AND_HOLIDAYS = re.compile(rf"(?<=[a-z])\s*,\s*{_HOLIDAY}\b|\b{_HOLIDAY}\s*,\s*(?={_DAY})")
 """Holidays among weekdays."""
-_DAYS_OFF = re.compile(rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)\s+off")
 _MONTH = f"(?:{'|'.join(_MONTHS)})"
 _OF_MONTH = r"\d\d?(?!\d|:\d)"
 """A day of a month; before minutes, it is the hour."""
@@ -50,14 +51,13 @@ _DATES = rf"{_MONTH}(?: {_OF_MONTH})?(?:-(?:{_MONTH}(?: {_OF_MONTH})?|{_OF_MONTH
 _WEEKS = r"\d\d?(?:-\d\d?(?:/\d\d?)?)?"
 _RULE = re.compile(
     rf"(?:week (?P<weeks>{_WEEKS}(?:\s*,\s*{_WEEKS})*)\s*)?(?P<dates>{_DATES})?:?\s*"
-    rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?"
+    rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?:?\s*(?P<times>24/7|[\d:,\- ]+)?"
 )
-_DATES_OFF = re.compile(rf"(?P<dates>{_DATES}(?:\s*,\s*{_DATES})*)\s+off")
 _DAYS_ONE = re.compile(_DAY)
 _DASH = re.compile(r"\s*[-–]\s*")
-_NTH = re.compile(r"(?<=[a-z])\[(-1|[1-5])\]")
+_NTH = re.compile(r"(?<=[a-z])\[((?:-1|[1-5])(?:,(?:-1|[1-5]))*)\]")
 """Which of a weekday in a month: ``Su[1]`` is the first Sunday."""
-_SEASONS = re.compile(rf"(?P<seasons>{_DATES}(?:\s*,\s*{_DATES})+):?\s+(?P<rest>.+)")
+_SEASONS = re.compile(rf"(?P<seasons>{_DATES}(?:\s*,\s*{_DATES})+)(?::?\s+(?P<rest>.+))?")
 _NEXT_RULE = re.compile(rf"(?<=\d)\s*,\s*(?={_DAY}\b)")
 """Where a comma parts two rules: after a time, before a day (``Mo-Fr 07:00-17:00, Sa 08:00-12:00``)."""
 _SPAN = re.compile(r"(\d\d?):(\d\d)-(\d\d?):(\d\d)")
@@ -85,8 +85,8 @@ class Hours:
     """Which of these weekdays of a month, if not all: 1 is the first, -1 the last."""
     iso_weeks: frozenset[int] = frozenset()
     """The weeks of the year by ISO 8601, if not all."""
-    off: tuple[tuple[Day, Day], ...] = ()
-    """Parts of the year in which it does not hold."""
+    unless: tuple[Hours, ...] = ()
+    """Rules after it: on a day on which one of them holds, this one does not, nor does its night before."""
 
     def holds(self, local_time: datetime, weather: str = "") -> bool:
         """Whether it is in force at the local time, in a weather of ``WEATHERS`` or none of them."""
@@ -94,6 +94,8 @@ class Hours:
 
     def _holds_at(self, local_time: datetime) -> bool:
         minute, day = local_time.hour * 60 + local_time.minute, local_time.date()
+        if any(later._has(day) for later in self.unless):
+            return False
         today, yesterday = self._has(day), self._has(day - timedelta(days=1))
         for first, last in self.spans:
             if first < last:
@@ -104,9 +106,7 @@ class Hours:
         return False
 
     def _has(self, day: date) -> bool:
-        if not _is_within(day, self.dates) or any(_is_within(day, off) for off in self.off):
-            return False
-        if day.isoweekday() not in self.days:
+        if not _is_within(day, self.dates) or day.isoweekday() not in self.days:
             return False
         if self.iso_weeks and day.isocalendar().week not in self.iso_weeks:
             return False
@@ -223,22 +223,22 @@ def read_hours(condition: str) -> list[Hours]:
         ValueError: it is none on the clock, the calendar or the weather.
     """
     condition, weather = _weather(_AND_HOLIDAYS.sub("", _DASH.sub("-", condition)))
-    rules = [
-        part
-        for rule in map(str.strip, condition.split(";"))
-        for part in _NEXT_RULE.split(rule)
-        if part and not _HOLIDAYS.fullmatch(part)
-    ]
-    off = [match["days"] for match in map(_DAYS_OFF.fullmatch, rules) if match]
-    dates_off = [match["dates"] for match in map(_DATES_OFF.fullmatch, rules) if match]
-    rules = [rule for rule in rules if not (_DAYS_OFF.fullmatch(rule) or _DATES_OFF.fullmatch(rule))]
-    if not rules and not weather:
+    found: list[Hours] = []
+    later: list[Hours] = []
+    off: list[str] = []
+    for text in reversed(list(map(str.strip, condition.split(";")))):
+        rules = [part for part in _NEXT_RULE.split(text) if part and not _HOLIDAYS.fullmatch(part)]
+        is_off = any(rule.endswith(" off") for rule in rules)
+        seasons = [each for rule in rules for each in _by_season(rule.removesuffix(" off"))]
+        read = [replace(_hours(each, off, weather), unless=tuple(later)) for each in seasons]
+        if is_off and (len(rules) > 1 or any(hours.spans != _WHOLE_DAY for hours in read)):
+            raise ValueError(condition)
+        off[:0] = [rule.removesuffix(" off").strip() for rule in rules if is_off]
+        found[:0] = [] if is_off else read
+        later[:0] = read
+    if not found and (later or not weather):
         raise ValueError(condition)
-    free = frozenset[int]().union(*map(_weekdays, off))
-    rules = [each for rule in rules for each in _by_season(rule)]
-    read = [_hours(rule, free, [*off, *dates_off], weather) for rule in rules or ["24/7"]]
-    closed = tuple(_dates(season.strip()) for dates in dates_off for season in dates.split(","))
-    return [replace(hours, off=closed) for hours in read]
+    return found or [_hours("24/7", (), weather)]
 
 
 def names_holidays(condition: str) -> bool:
@@ -275,26 +275,26 @@ def _by_season(rule: str) -> Iterator[str]:
     if match is None:
         yield rule
     else:
-        yield from (f"{season.strip()} {match['rest']}" for season in match["seasons"].split(","))
+        yield from (f"{season.strip()} {match['rest'] or ''}" for season in match["seasons"].split(","))
 
 
-def _hours(rule: str, free: frozenset[int], off: Sequence[str], weather: str) -> Hours:
-    """One rule such as ``Mo-Fr 08:00-09:30,14:30-16:00``."""
+def _hours(rule: str, off: Sequence[str], weather: str) -> Hours:
+    """One rule such as ``Mo-Fr 08:00-09:30,14:30-16:00``; ``off`` are the days of the rules that except some."""
+    rule = rule.strip()
     nth = _NTH.search(rule)
     match = _RULE.fullmatch(rule[: nth.start()] + rule[nth.end() :] if nth else rule)
     if match is None or not rule or (nth is not None and not _DAYS_ONE.fullmatch(match["days"] or "")):
         raise ValueError(rule)
     dates, days = match["dates"] or "", re.sub(r"\s", "", match["days"] or "")
     times = (match["times"] or "").strip().removeprefix("24/7")
-    spans = tuple(_span(span.strip()) for span in times.split(",")) if times else ((0, _DAY_MINUTES),)
+    spans = tuple(_span(span.strip()) for span in times.split(",")) if times else _WHOLE_DAY
     times_said = re.sub(r"\s*,\s*", ", ", times)
     but = f"but {', '.join(off)}" if off else ""
     said = days.replace(",", ", ") + (nth[0] if nth else "")
     of_year = f"week {match['weeks']}" if match["weeks"] else ""
     words = " ".join(part for part in (of_year, dates, said, times_said, but, WEATHERS.get(weather, "")) if part)
-    weekdays = _weekdays(days) - free
-    weeks = frozenset((int(nth[1]),)) if nth else frozenset[int]()
-    return Hours(weekdays, spans, words, _dates(dates), weather, weeks, _iso_weeks(match["weeks"] or ""))
+    weeks = frozenset(map(int, nth[1].split(","))) if nth else frozenset[int]()
+    return Hours(_weekdays(days), spans, words, _dates(dates), weather, weeks, _iso_weeks(match["weeks"] or ""))
 
 
 def _iso_weeks(text: str) -> frozenset[int]:
@@ -343,6 +343,8 @@ def _span(text: str) -> tuple[int, int]:
     if match is None:
         raise ValueError(text)
     first, last = int(match[1]) * 60 + int(match[2]), int(match[3]) * 60 + int(match[4])
+    if first + _DAY_MINUTES >= last > _DAY_MINUTES:  # 22:00-26:00
+        last -= _DAY_MINUTES
     if max(first, last) > _DAY_MINUTES or first == _DAY_MINUTES or int(match[2]) > 59 or int(match[4]) > 59:
         raise ValueError(text)
     return first, last

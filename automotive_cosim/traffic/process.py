@@ -11,31 +11,26 @@ import faulthandler
 import fcntl
 import gc
 import os
-import shutil
 import signal
 import socket
 import stat
 import sys
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
-from automotive_cosim.errors import CosimError, ScenarioError, TrafficError
-from automotive_cosim.formats.incidents import Incident
+from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.formats.scenario import Scenario
-from automotive_cosim.traffic.accounts import QUEUE_PERIOD_S, Account, Settled, TrafficSummary
+from automotive_cosim.formats.writing import copy
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
-from automotive_cosim.traffic.divert import Edges, divert
 from automotive_cosim.traffic.drive import EgoDrive
-from automotive_cosim.traffic.flow import Advice, Advisor, FlowSummary, SignalControl, control
-from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
+from automotive_cosim.traffic.running import Running
 from automotive_cosim.traffic.sumo import load_library
 from automotive_cosim.traffic.wire import Packed, pack_advance, pack_snapshot, pack_state
 from automotive_cosim.traffic.world import World
@@ -43,8 +38,8 @@ from automotive_cosim.traffic.world import World
 BEAT_S = 1.0
 """Wall time between two signs of life during a long call."""
 
-SETTLING_BEAT_S = 5.0
-"""The same while a future is settled: nobody may read for minutes, and a full socket would hold it up."""
+UNREAD_BEAT_S = 5.0
+"""The same during a call that is begun and read later: in minutes a full socket would hold it up."""
 
 WAITING_FACTOR = 20
 """Wall time that a step may take, in multiples of the processor time that it may use."""
@@ -64,14 +59,9 @@ class Server:
         """
         self._channel = channel
         self._hang_limit_s = hang_limit_s
-        self._world: World | None = None
-        self._drive: EgoDrive | None = None
-        self._ledger: Ledger | None = None
-        self._advisor: Advisor | None = None
+        self._loaded: Running | None = None
         self._last_beat_s = 0.0
         self._beat_s = BEAT_S
-        self._done: tuple[float, float] | None = None
-        """How much of a long call is done, and of how much, if it says so."""
 
     def run(self) -> None:
         """Serves until the connection closes."""
@@ -83,8 +73,18 @@ class Server:
                 self._stop_alarm()
                 self._channel.send(answer)  # in a forked child this is its own connection already
         except ClosedError:
-            if self._world is not None and self._world.writes:
-                self._world.close()  # which completes the outputs
+            if self._loaded is not None and self._loaded.world.writes:
+                self._loaded.world.close()  # which completes the outputs
+
+    @property
+    def _running(self) -> Running:
+        assert self._loaded is not None
+        return self._loaded
+
+    @property
+    def _drive(self) -> EgoDrive:
+        assert self._running.drive is not None
+        return self._running.drive
 
     def _answer(self, name: str, arguments: tuple[Any, ...]) -> tuple[str, Any]:
         try:
@@ -111,20 +111,20 @@ class Server:
         load_library()  # which writes where Python keeps its compiled modules
         confine([scratch] if setup.outputs is None else [scratch, setup.outputs.parent])
         os.chdir(scratch)  # which is gone afterwards: nothing can be made under a relative name
-        self._world = World(setup, scratch)
+        world = World(setup, scratch)
+        self._loaded = Running(world, self._beat)
         self._set_alarm()
-        self._world.warm_up(self._progress)
-        self._world.prepare_copies()
+        world.warm_up(self._progress)
+        world.prepare_copies()
         gc.collect()
         gc.freeze()  # collecting garbage would copy every page that the children share
-        return self._world.network.map
+        return world.network.map
 
     def do_move(self, scenario: Scenario) -> RoadNetwork:
         """Moves the warm traffic to where that scenario has it; returns the network there."""
-        assert self._world is not None
-        self._world.move(scenario)
+        self._running.world.move(scenario)
         gc.freeze()  # as after loading
-        return self._world.network.map
+        return self._running.world.network.map
 
     def do_fork(self, outputs: Path | None) -> int:
         """Makes a child that serves the next connection; both answer with their process id."""
@@ -143,150 +143,44 @@ class Server:
 
     def do_depart(self, plan: EgoPlan) -> Packed:
         """Puts the ego on the road; returns its first state."""
-        assert self._world is not None
-        self._drive = self._world.depart(plan, self._after_step)
+        running = self._running
+        running.drive = running.world.depart(plan, running.after_step)
         return pack_state(self._drive.state)
 
     def do_advance(self, duration_s: float) -> Packed:
         """Lets the traffic run."""
-        assert self._drive is not None
-        return pack_advance(self._drive.advance(duration_s, self._after_step))
+        return pack_advance(self._drive.advance(duration_s, self._running.after_step))
 
     def do_request(self, request: RoadRequest) -> Answer:
         """Makes a request to the driver or the car."""
-        assert self._drive is not None
         return self._drive.request(request)
 
     def do_alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """Finds alternative routes by news of that age."""
-        assert self._drive is not None
         return self._drive.alternatives(age_s)
 
     def do_look(self) -> Packed:
         """Looks at everything around the ego."""
-        assert self._drive is not None
         return pack_snapshot(self._drive.look())
 
     def do_shapes(self) -> RoadShapes:
         """Reads the lanes and junctions."""
-        assert self._drive is not None
         return self._drive.shapes()
 
-    # --- calls of studies ---------------------------------------------------------------------------------
+    # --- calls of who extends it ----------------------------------------------------------------------------
 
-    def do_keep_ledger(self, consumptions: bool, tracks: bool) -> None:
-        """Records every step from now on in a ledger, which forks copy."""
-        assert self._world is not None
-        self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions, tracks=tracks)
+    def do_call(self, call: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+        """Calls a function with what runs here."""
+        return call(self._running, *arguments, **named)
 
-    def do_run_on(self, duration_s: float) -> TrafficSummary:
-        """Lets the traffic run without an ego."""
-        assert self._world is not None
-        assert self._ledger is not None
-        for _ in range(round(duration_s / self._world.step_s)):
-            self._world.step()
-            self._after_step()
-        return self._ledger.summary()
-
-    def do_others(self) -> tuple[tuple[str, ...], TrafficSummary]:
-        """The other vehicles, and the state of the traffic."""
-        assert self._ledger is not None
-        return self._ledger.others(), self._ledger.summary()
-
-    def do_account(self) -> Account:
-        """Figures of the ego's drive so far."""
-        assert self._ledger is not None
-        return self._ledger.account()
-
-    def do_settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> tuple[Packed, Settled]:
-        """Runs until everything has ended; returns the ego's last state and the outcome."""
-        assert self._world is not None
-        assert self._drive is not None
-        assert self._ledger is not None
-        self._beat_s = SETTLING_BEAT_S
-
-        def after_step(done: float, total: float) -> None:
-            self._done = done, total
-            self._after_step()
-
-        outcome = settle(self._world, self._drive, self._ledger, groups, share, limit_s, after_step)
-        return pack_state(self._drive.state), outcome
-
-    def do_own_choice(self) -> tuple[str, ...]:
-        """The route of SUMO's own device; this process cannot be used for anything else afterwards."""
-        return own_choice(load_library())
-
-    def do_renew(self, fresh: Fresh, seed: int) -> None:
-        """Gives this copy random numbers of its own."""
-        renew(load_library(), fresh, seed)
-
-    def do_divert(self, old: Edges, new: Edges, share: float, seed: int) -> tuple[tuple[str, ...], int]:
-        """Sends a share of the other cars another way; returns who took it, and how many could have."""
-        return divert(load_library(), old, new, share, seed)
-
-    def do_stage(self, incident: Incident) -> None:
-        """Stages an incident in this copy."""
-        assert self._world is not None
-        self._world.stage(incident)
-
-    def do_advise(self, advice: Advice, seed: int) -> None:
-        """Advises other cars in this copy."""
-        assert self._world is not None
-        self._advisor = self._world.advisor(advice, seed)
-
-    def do_control(self, signals: SignalControl) -> None:
-        """Controls the signals of this copy in another way.
-
-        Raises:
-            ScenarioError: there are none.
-        """
-        if not control(load_library(), signals):
-            raise ScenarioError("the network has no signals to control in another way")
-
-    def do_flow(self, duration_s: float, every_s: float) -> tuple[FlowSummary, ...]:
-        """Lets the traffic run without an ego; returns its state now and at the end of every period."""
-        assert self._ledger is not None
-        summaries = [self._flow_summary(())]
-        for number in range(round(duration_s / every_s)):
-            self._done = number * every_s, duration_s
-            queues = []
-            for _ in range(round(every_s / QUEUE_PERIOD_S)):
-                self.do_run_on(QUEUE_PERIOD_S)
-                queues.append(self._ledger.queues_m())
-            summaries.append(self._flow_summary(tuple(queues)))
-        return tuple(summaries)
-
-    def _flow_summary(self, queues: tuple[dict[str, float], ...]) -> FlowSummary:
-        assert self._ledger is not None
-        assert self._world is not None
-        ledger, detours = self._ledger, self._world.detours
-        return FlowSummary(
-            ledger.summary(),
-            len(ledger.arrivals_s),
-            queues,
-            self._world.slowed(),
-            ledger.consumed_by_class(),
-            detours.cut_short,
-            detours.kept_in,
-        )
-
-    def do_prove_fresh(self, seed: int) -> Trial:
-        """What a seed makes of this traffic; this process cannot be used for anything else afterwards."""
-        assert self._world is not None
-        generators = Generators(load_library())
-        generators.seed(seed)
-        drawn = generators.draw()
-        for _ in range(round(PROOF_S / self._world.step_s)):
-            self._world.step()
-            self._after_step()
-        return drawn, fingerprint(load_library())
-
-    def _after_step(self) -> None:
-        if self._ledger is not None:
-            self._ledger.note()
-        if self._advisor is not None:
-            self._advisor.after_step()
-        self._beat()
+    def do_run(
+        self, call: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
+    ) -> tuple[Packed | None, Any]:
+        """The same with one that takes long and drives on; returns the ego's last state, if there is one, too."""
+        self._beat_s = UNREAD_BEAT_S
+        answer = self.do_call(call, arguments, named)
+        drive = self._running.drive
+        return None if drive is None else pack_state(drive.state), answer
 
     # --- signs of life ------------------------------------------------------------------------------------
 
@@ -295,7 +189,8 @@ class Server:
         if now_s - self._last_beat_s >= self._beat_s:
             self._last_beat_s = now_s
             self._set_alarm()
-            self._channel.send(("beat", None) if self._done is None else ("progress", self._done))
+            done = self._running.done
+            self._channel.send(("beat", None) if done is None else ("progress", done))
 
     def _progress(self, done_s: float, total_s: float) -> None:
         self._set_alarm()
@@ -345,7 +240,7 @@ def copy_outputs(folder: Path) -> None:
         except OSError:  # the listing's own
             continue
         if name.name in OUTPUTS and name.parent.parent == folder.parent:
-            shutil.copyfile(name, folder / name.name)
+            copy(name, folder / name.name, name.stat().st_size)
             own = os.open(folder / name.name, os.O_WRONLY | os.O_APPEND)
             os.dup2(own, descriptor, inheritable=False)
             os.close(own)

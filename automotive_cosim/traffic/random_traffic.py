@@ -10,6 +10,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.ways import NEAREST, ways_from
 
@@ -51,4 +52,4 @@ def write(path: Path, network: Network, per_km_h: float, seed: int) -> None:
         f'departSpeed="max"><route edges={quoteattr(" ".join(route))}/></flow>'
         for number, route in enumerate(routes)
     )
-    path.write_text("\n".join(("<additional>", *rows, "</additional>", "")), encoding="utf-8")
+    write_whole(path, "\n".join(("<additional>", *rows, "</additional>", "")))

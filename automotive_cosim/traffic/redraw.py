@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from automotive_cosim.formats import files
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.xml import read_tree, write_xml
 
 WINDOW_S = 300.0
 """A trip departs up to this long before or after its time in the file, but not before the file's first."""
@@ -31,10 +32,12 @@ def redraw(path: Path, target: Path, seed: int) -> Path:
         path: SUMO's route file.
         target: the file to write.
         seed: seed of the day.
+
+    Raises:
+        ScenarioError: it cannot be read.
     """
     rng = np.random.default_rng([seed, 8])
-    with files.opened(path) as file:
-        root = ET.parse(file).getroot()
+    root = read_tree(path, error=ScenarioError)
     fixed = [each for each in root if each.tag not in DEPARTING]
     departing = [each for each in root if each.tag in DEPARTING]
     first_s = min((at_s for each in departing if (at_s := _departs_s(each)) is not None), default=0.0)
@@ -52,7 +55,7 @@ def redraw(path: Path, target: Path, seed: int) -> Path:
                 copy.set("id", f"{each.get('id')}.day{number}")
             drawn.append((departs_s, copy))
     root[:] = [*fixed, *(each for _, each in sorted(drawn, key=lambda one: one[0]))]
-    ET.ElementTree(root).write(target, encoding="utf-8", xml_declaration=True)
+    write_xml(target, root)
     return target
 
 

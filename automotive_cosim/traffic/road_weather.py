@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from automotive_cosim.contracts import Weather
 from automotive_cosim.formats.scenario import WeatherAt, weather_at
 from automotive_cosim.traffic.network import Network
-from automotive_cosim.traffic.sumo import LibSumo
+from automotive_cosim.traffic.sumo import DesiredSpeed, LibSumo
 
 G_MPS2 = 9.81
 
@@ -237,6 +237,12 @@ class Surface:
     def arrived(self, vehicle: str) -> None:
         """Handles a vehicle that has left the road."""
         self._factors.pop(vehicle, None)
+
+    def wanted(self, vehicle: str) -> DesiredSpeed:
+        """How fast a vehicle that has just departed wants to drive on a dry road."""
+        dry = self._types.get(self._sumo.type_of(vehicle))
+        of = self._sumo.vehicle
+        return min(1.0, of.getSpeedFactor(vehicle)), of.getMaxSpeed(vehicle) if dry is None else dry.top_mps
 
     def _treat(self, type_id: str) -> None:
         kind, condition = self._sumo.type, self.condition

@@ -142,21 +142,13 @@ class Signs:
         if edge_id not in self._kept:
             edge = self._edges[edge_id]
             lanes_mps = tuple(self._sumo.lane_speed(lane) for lane in edge.lane_ids)
-            inner = (lane for own in edge.lane_ids for lane in self._inner_lanes(own))
+            inner = (lane for own in edge.lane_ids for lane in inner_lanes(self._sumo, own))
             across_mps = {lane: self._sumo.lane_speed(lane) for lane in inner}
             self._kept[edge_id] = _Kept(edge, lanes_mps, lanes_mps, across_mps, lanes_mps)
         return self._kept[edge_id]
 
     def _read(self, kept: _Kept) -> tuple[float, ...]:
         return tuple(self._sumo.lane_speed(lane) for lane in kept.built.lane_ids)
-
-    def _inner_lanes(self, lane: str) -> Iterator[str]:
-        """The lanes that lead from one across the junction; some wait in its middle, so they are two."""
-        for link in self._sumo.lane.getLinks(lane):
-            inner = str(link[4])
-            if inner:
-                yield inner
-                yield from self._inner_lanes(inner)
 
     def _show(self, edge_id: str) -> None:
         kept = self._keep(edge_id)
@@ -200,6 +192,15 @@ class Signs:
         for lane, built_mps in kept.across_mps.items():
             is_bend = built_mps < built.speed_mps - BEND_MPS
             self._sumo.lane.setMaxSpeed(lane, limited if changed and not is_bend else min(built_mps, limited))
+
+
+def inner_lanes(sumo: LibSumo, lane: str) -> Iterator[str]:
+    """The lanes that lead from one across the junction; some wait in its middle, so they are two."""
+    for link in sumo.lane.getLinks(lane):
+        inner = str(link[4])
+        if inner:
+            yield inner
+            yield from inner_lanes(sumo, inner)
 
 
 def variable_edges(sumo: LibSumo, network: Network) -> frozenset[str]:

@@ -10,6 +10,7 @@ from automotive_cosim.traffic.closures import Closures
 from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.road_weather import Surface
+from automotive_cosim.traffic.script import VehicleScript
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.signs import Signs
 from automotive_cosim.traffic.sumo import LibSumo
@@ -39,6 +40,7 @@ class IncidentStage:
         self.closures = Closures(sumo, network, self.detours)
         self.route_changed = False
         """Whether the ego's route has changed since this was last set to False."""
+        self.script = VehicleScript(sumo, ego_id)
         self._names = 0
         sumo.copy_type(TEMPLATE_TYPE, CAR_TYPE)
 

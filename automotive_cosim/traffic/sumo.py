@@ -7,13 +7,15 @@ libsumo holds one simulation per process.
 from __future__ import annotations
 
 import io
+import math
 import os
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
-from typing import Any
+from types import MappingProxyType
+from typing import Any, TypeAlias
 
 from automotive_cosim.errors import ScenarioError, SetupError
 
@@ -38,6 +40,12 @@ ANY_LANE_CHANGE, WAYMAKING = 1621, 1605
 HAZARD_SIGNAL = 4
 """SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
 
+
+DesiredSpeed: TypeAlias = tuple[float, float]
+"""How fast a driver wants to drive: a factor on the limit, and a top speed in m/s."""
+
+THE_LIMIT: DesiredSpeed = (1.0, math.inf)
+NO_WANTS: Mapping[str, DesiredSpeed] = MappingProxyType({})
 
 NOW = -1.0
 """SUMO's departure time of a route that is looked for at once."""
@@ -132,12 +140,19 @@ class LibSumo:
         self.edge_vehicles: Callable[[str], Sequence[str]] = edge.getLastStepVehicleIDs
         self.vehicle_ids: Callable[[], Sequence[str]] = vehicle.getIDList
 
-    def on_lanes(self, without: Collection[str] = ()) -> Iterator[tuple[str, float]]:
-        """The lane and speed of every other vehicle in one; parked vehicles and those off the road are not."""
+    def on_lanes(
+        self, without: Collection[str] = (), wants: Mapping[str, DesiredSpeed] = NO_WANTS
+    ) -> Iterator[tuple[str, float, DesiredSpeed]]:
+        """The lane, speed and wanted speed of every other vehicle in one; who has parked or is off the road is not.
+
+        Args:
+            without: vehicles to leave out.
+            wants: those of which it is known how fast they want to drive.
+        """
         lane_of, speed = self.lane_of, self.speed
         for vehicle in self.vehicle_ids():
             if vehicle not in without and (lane := lane_of(vehicle)):
-                yield lane, speed(vehicle)
+                yield lane, speed(vehicle), wants.get(vehicle, THE_LIMIT)
 
     def has_device(self, vehicle: str, device: str) -> bool:
         """Whether a vehicle has a device."""

@@ -9,14 +9,16 @@ from __future__ import annotations
 import itertools
 import re
 import shutil
+from codecs import StreamWriter, getwriter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol, TextIO
+from typing import Protocol
 from xml.sax.saxutils import escape, quoteattr
 
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file, opened
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.formats.xml import SHARED_ENCODINGS, OnStart, scan
 from automotive_cosim.traffic.georeference import in_full
 from automotive_cosim.traffic.sumo import EGO
@@ -73,6 +75,17 @@ def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file
     _vet(path, None, "", (), what, also)
 
 
+def files_in(path: Path) -> tuple[Path, ...]:
+    """The files that a network, a route file or an additional file names, and those that they name.
+
+    Raises:
+        ScenarioError: see ``vet``.
+    """
+    found: list[Path] = []
+    _vet(path, None, "", (), found=found)
+    return tuple(found)
+
+
 def copy_vetted(
     path: Path, folder: Path, name: str, also: ElementHandler | None = None, what: str = "a SUMO file"
 ) -> str:
@@ -111,19 +124,18 @@ def _vet(
     through: tuple[Path, ...],
     what: str = "a SUMO file",
     also: ElementHandler | None = None,
+    found: list[Path] | None = None,
 ) -> str:
     if path.resolve() in through:
         raise ScenarioError(f"{path} includes itself")
-    reader = _Reader(path, folder, name, (*through, path.resolve()), also)
+    reader = _Reader(path, folder, name, (*through, path.resolve()), also, [] if found is None else found)
     copy = None if folder is None else folder / f"{name}.xml"
     start, end = (reader.start, reader.end) if also is None else _both(reader, also)
     encoding = scan(path, start, end, error=ScenarioError, what=what, copy=copy)
     if copy is not None and (reader.changed or encoding not in SHARED_ENCODINGS):
-        as_it_was = copy.replace(copy.with_suffix(".given"))
-        with copy.open("w", encoding="utf-8") as file:
-            writer = _Writer(file, reader.changed)
-            scan(as_it_was, writer.start, writer.end, writer.text, error=ScenarioError)
-        as_it_was.unlink()
+        with drafted(copy) as file:
+            writer = _Writer(getwriter("utf-8")(file), reader.changed)
+            scan(copy, writer.start, writer.end, writer.text, error=ScenarioError)
     return f"{name}.xml"
 
 
@@ -152,6 +164,8 @@ class _Reader:
     """This file, and those that include it."""
     also: ElementHandler | None = None
     """Reads it too, and what it includes."""
+    found: list[Path] = field(default_factory=list)
+    """Takes the files that it names, and those that they name."""
     changed: dict[int, dict[str, str] | None] = field(default_factory=dict)
     """Number of an element, in the order of the file -> its attributes in a copy; None leaves it out."""
     count: int = 0
@@ -212,10 +226,12 @@ class _Reader:
             missing = f"<{element}> names {read[:200]!r}, which is missing in {self.path.parent}"
             raise ScenarioError(f"{where}: {missing}")
         name = f"{self.name}-{next(self.inner)}"
+        self.found.append(file)
         if element not in LISTS:
-            return _vet(file, self.folder, name, self.through, also=self.also if element == "include" else None)
+            also = self.also if element == "include" else None
+            return _vet(file, self.folder, name, self.through, also=also, found=self.found)
         if self.folder is not None:
-            with opened(file) as given, (self.folder / name).open("wb") as copy:
+            with opened(file) as given, drafted(self.folder / name) as copy:
                 shutil.copyfileobj(given, copy)
         return name
 
@@ -238,7 +254,7 @@ class _Reader:
 class _Writer:
     """Writes a file's elements with the changes."""
 
-    file: TextIO
+    file: StreamWriter
     changed: Mapping[int, Mapping[str, str] | None]
     count: int = 0
     left_out: int = 0

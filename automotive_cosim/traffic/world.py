@@ -9,17 +9,16 @@ from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.contracts import EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
+from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.formats.incidents import Incident
 from automotive_cosim.formats.scenario import Scenario, Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
-from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
+from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion, Free
 from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.drive import EgoDrive
-from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
-from automotive_cosim.traffic.flow import Advice, Advisor
+from automotive_cosim.traffic.ego import FASTEST_MPS, FOR_GOOD_S, Driver
 from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.incidents import Incidents
 from automotive_cosim.traffic.instant import Instant, KnownInstant
@@ -38,7 +37,7 @@ from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
 from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
-from automotive_cosim.traffic.signs import variable_edges
+from automotive_cosim.traffic.signs import inner_lanes, variable_edges
 from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import (
@@ -48,6 +47,7 @@ from automotive_cosim.traffic.sumo import (
     EGO_TYPE,
     LIMITS,
     NOW,
+    DesiredSpeed,
     LibSumo,
     load_library,
     start,
@@ -104,13 +104,22 @@ class World:
         self._emergency: set[str] = set()
         """Vehicles with their blue lights on."""
         self._not_like_cars: set[str] = set()
+        self._wants: dict[str, DesiredSpeed] = {}
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
         # the recorded traces of scenarios with a scenario.toml have what calls to distributions made of them
         drawn = self._configuration.distributions if scenario.as_stated else None
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE), drawn)
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
         variable = variable_edges(self._sumo, self.network)
-        self.congestion = Congestion(self.network, lambda: self._sumo.on_lanes(self._not_like_cars), variable)
+        # in recorded traces of scenarios with a scenario.toml, all count against the limit, also what was driven
+        # under a limit of ours that has ended
+        changing = self.network.edges.keys() if scenario.as_stated else variable
+        self.congestion = Congestion(
+            self.network,
+            lambda: self._sumo.on_lanes(self._not_like_cars, self._wants),
+            changing,
+            self._free() if scenario.as_stated else None,
+        )
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
         self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO, variable), scenario)
         self._has_incidents = self._incidents.are_left
@@ -135,6 +144,12 @@ class World:
                 "(--no-gps)"
             )
         return network
+
+    def _free(self) -> Free:
+        """What a drive is like on these roads without traffic."""
+        lanes = [(edge.edge_id, lane) for edge in self.network.edges.values() for lane in edge.lane_ids]
+        inner = ((edge_id, each) for edge_id, lane in lanes for each in inner_lanes(self._sumo, lane))
+        return Free(FASTEST_MPS, {lane: (edge_id, self._sumo.lane_speed(lane)) for edge_id, lane in inner})
 
     def warm_up(self, progress: WarmUpProgress | None) -> None:
         """Lets the traffic run before the ego departs.
@@ -203,7 +218,7 @@ class World:
                 beat()
         round_ = planned(self.always_open, plan.trip, plan.onward) if plan.onward else None
         edges = round_.first if round_ else self._trip_edges(plan.trip)
-        self._add_ego(edges, driver_profile, parked=plan.parked)
+        self._add_ego(edges, driver_profile, plan.trip, parked=plan.parked)
         if plan.emission_class:
             try:
                 self._sumo.vehicle.setEmissionClass(EGO, plan.emission_class)
@@ -274,10 +289,6 @@ class World:
         """Edges with another limit than the scenario has there now, and that limit as a share of it."""
         return self._incidents.slowed
 
-    def advisor(self, advice: Advice, seed: int) -> Advisor:
-        """Begins to advise other cars, with a search of its own."""
-        return Advisor(self._sumo, Router(self._sumo, self.network, self.congestion, SEARCHING_TYPE), advice, seed)
-
     def close(self) -> None:
         """Ends the simulation."""
         self._sumo.close()
@@ -296,6 +307,8 @@ class World:
             elif sumo.has_device(vehicle, BLUE_LIGHT):
                 self._emergency.add(vehicle)
             if vehicle != EGO:
+                if self._scenario.as_stated:
+                    self._wants[vehicle] = self._surface.wanted(vehicle)
                 self._surface.departed(vehicle)
                 self._check_route(vehicle)
         if self.detours.are_needed:
@@ -303,6 +316,7 @@ class World:
         self._not_like_cars.difference_update(arrived)
         for vehicle in arrived:
             self._surface.arrived(vehicle)
+            self._wants.pop(vehicle, None)
         now_s = sumo.time()
         has_changed = now_s >= self._forecast.until_s
         if has_changed:
@@ -331,7 +345,7 @@ class World:
                 "set ignore-route-errors in the .sumocfg"
             )
 
-    def _add_ego(self, edges: tuple[str, ...], driver: DriverProfile, *, parked: bool) -> None:
+    def _add_ego(self, edges: tuple[str, ...], driver: DriverProfile, trip: Trip, *, parked: bool) -> None:
         sumo = self._sumo
         sumo.copy_type(TEMPLATE_TYPE, EGO_TYPE)
         kind = sumo.type
@@ -348,6 +362,20 @@ class World:
         kind.setActionStepLength(EGO_TYPE, self.step_s)
         kind.setParameter(EGO_TYPE, "has.rerouting.device", "false")
         sumo.add_route(EGO_TYPE, edges)
+        if not parked and trip.from_m is not None:
+            edge = self.network.edges[edges[0]]
+            if trip.from_m > edge.length_m or trip.from_lane >= len(edge.lane_ids):
+                raise ScenarioError(
+                    f"trip {trip.name!r} of scenario {self._scenario.name!r}: from_m and from_lane are not on edge "
+                    f"{edge.edge_id!r}, which has {len(edge.lane_ids)} lanes of {edge.length_m:.0f} m for cars"
+                )
+            lane = edge.lane_ids[trip.from_lane]
+            mps = min(trip.from_kmh / KMH_PER_MPS, sumo.lane_speed(lane))
+            number, from_m = lane.rpartition("_")[2], f"{trip.from_m:.2f}"
+            sumo.add_vehicle(
+                EGO, EGO_TYPE, typeID=EGO_TYPE, departLane=number, departPos=from_m, departSpeed=f"{mps:.2f}"
+            )
+            return
         if not parked:
             sumo.add_vehicle(EGO, EGO_TYPE, typeID=EGO_TYPE, departLane="best", departSpeed="max")
             return

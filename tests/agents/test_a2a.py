@@ -23,6 +23,7 @@ from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, SetupError, UserError
 from automotive_cosim.interface.functions import as_openai, functions, offered
 from automotive_cosim.interface.observe import Channel
+from automotive_cosim.models.base import DEAREST_USD, IN_PER_S, OUT_PER_S
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.outside import OutsideAgent
@@ -48,7 +49,7 @@ pytest.importorskip("a2a")
 Seen = Callable[..., Observation]
 Serve = Callable[..., RemoteAgent]
 SETTINGS = AgentSettings(CALLS)
-METRICS = {"prompt_tokens": 70, "completion_tokens": 5, "thinking_tokens": 3, "cost": 0.25, "num_llm_calls": 2}
+METRICS = {"prompt_tokens": 70, "completion_tokens": 5, "thinking_tokens": 3, "cost": 0.05, "num_llm_calls": 2}
 
 
 @pytest.fixture
@@ -106,7 +107,7 @@ def test_a_task_is_told_as_car_bench_tells_it_and_calls_are_steps(
     assert len({each["tool_call_id"] for each in results}) == 2
     assert len(remote.messages) == 2  # it has reported; nothing is to be asked any more
     (reply,) = [stage.reply for stage in agent.stages if stage.reply is not None]
-    assert (reply.tokens_in, reply.tokens_out, reply.tokens_reasoning, reply.cost_usd) == (70, 8, 3, 0.25)
+    assert (reply.tokens_in, reply.tokens_out, reply.tokens_reasoning, reply.cost_usd) == (70, 8, 3, 0.05)
     assert len(remote.heard) == 1
     agent.reset("x")
     agent.act(seen)
@@ -135,6 +136,17 @@ def test_metrics_that_come_with_the_last_words_are_waited_for(serve: Serve, obse
     assert agent.act(seen).action_type is ActionType.STATUS
     assert sum(stage.reply.tokens_in for stage in agent.stages if stage.reply) == 70
     assert [each["content"] for each in data(remote.messages[1])["tool_results"]] == ["ok"]
+
+
+def test_no_more_is_believed_of_its_figures_than_can_have_been(serve: Serve, observation: Seen) -> None:
+    remote = serve(answering([calls(DONE)]))
+    remote.metadata = {"turn_metrics": dict.fromkeys(METRICS, 10**9)}
+    agent = play(remote, seen := observation("Nothing"))
+    agent.act(seen)
+    (reply,) = [stage.reply for stage in agent.stages if stage.reply is not None]
+    most_in, most_out = (rate * (1.01 + reply.seconds) for rate in (IN_PER_S, OUT_PER_S))
+    assert (reply.tokens_in <= most_in, reply.tokens_out <= most_out) == (True, True)
+    assert reply.cost_usd <= DEAREST_USD * (reply.tokens_in + reply.tokens_out)
 
 
 def test_a_failure_after_the_declaration_changes_nothing(serve: Serve, observation: Seen) -> None:

@@ -11,9 +11,9 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit.apps.memo.commands import Record
-from automotive_cosim.cockpit.apps.store.state import Installed
-from automotive_cosim.cockpit.apps.timer.commands import StartTimer
+from automotive_cosim.cockpit.apps.memo import Record
+from automotive_cosim.cockpit.apps.store import Installed
+from automotive_cosim.cockpit.apps.timer import StartTimer
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.messages import Focus, Pick, Show

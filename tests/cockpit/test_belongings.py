@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
-from automotive_cosim.cockpit.apps.trip.state import TripMeter
+from automotive_cosim.cockpit.apps.trip import TripMeter
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit

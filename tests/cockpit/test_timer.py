@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from automotive_cosim.cockpit.apps.timer.state import MOST_MIN, STEP_MIN
+from automotive_cosim.cockpit.apps.timer import MOST_MIN, STEP_MIN
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import FeedbackCode
 from automotive_cosim.contracts.ids import resource_id

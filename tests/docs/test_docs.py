@@ -4,6 +4,7 @@ As it stands where that is quick, on the small grid or with ``--dry-run`` where 
 needs what only the reader has, or another test runs it.
 """
 
+import ast
 import re
 import shlex
 import shutil
@@ -107,7 +108,8 @@ def test_every_python_block_compiles(page):
 
 @over([page for page in PAGES if page.parent.name != "reference" and page.stem not in LOOKED_UP])
 def test_a_guide_can_be_read_in_five_minutes(page):
-    prose = re.sub(r"^```[^`]*^```|^    [^\n]*$|\]\(\S+?\)|\|", "", page.read_text("utf-8"), flags=re.MULTILINE)
+    looked_up = r"^```[^`]*^```|^    [^\n]*$|\]\(\S+?\)|\| `[\w./:]+` (?=\|)|\|"
+    prose = re.sub(looked_up, "", page.read_text("utf-8"), flags=re.MULTILINE)
     assert len(prose.split()) <= MOST_WORDS, "move what is looked up to docs/reference"
 
 
@@ -333,6 +335,25 @@ def test_every_treatment_is_needed():
     assert {pattern for pattern, _, _ in TREATED} - {"replay"} == used - {"replay"}
     text = "\n".join(text for page in PAGES for _, text in blocks(page))
     assert all(each in text for each in (*EXCERPTS, *ELSEWHERE))
+
+
+PROMISES = re.findall(
+    r"^\| (.+?) \| `(\S+)` \| `(\S+)::(\w+)` \|$", (TOP / "docs/trust.md").read_text("utf-8"), re.MULTILINE
+)
+
+
+@over(PROMISES)
+def test_every_promise_of_the_trust_page_is_kept_somewhere_and_shown_by_a_test(promise, module, file, test):
+    assert (TOP / "automotive_cosim" / module).is_file()
+    written = ast.parse((TOP / "tests" / file).read_text(encoding="utf-8"))
+    assert test in {each.name for each in written.body if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef)}
+    assert sum(promise == row[0] for row in PROMISES) == 1
+
+
+def test_every_row_of_the_trust_page_names_a_module_and_a_test():
+    told = (TOP / "docs/trust.md").read_text("utf-8").partition("| promise | module | test |\n|---|---|---|\n")[2]
+    rows = told.partition("\n\n")[0].splitlines()
+    assert len(rows) == len(PROMISES) > 20
 
 
 def test_pages_count_the_tasks_as_they_are():

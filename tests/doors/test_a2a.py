@@ -8,10 +8,12 @@ import re
 import shlex
 import socket
 import threading
+import time
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -22,10 +24,13 @@ import uvicorn
 from a2a.client import ClientConfig, ClientFactory
 from a2a.client.card_resolver import parse_agent_card
 from a2a.helpers.proto_helpers import get_data_parts, get_text_parts, new_data_part, new_message, new_text_part
-from a2a.types import Role, SendMessageRequest, TaskState
+from a2a.server.context import ServerCallContext
+from a2a.server.events import EventQueue
+from a2a.types import Role, SendMessageRequest, Task, TaskState
 
+from automotive_cosim.doors import a2a
 from automotive_cosim.doors.a2a import Assessor, _Stoppable, _StoppedError, make_app
-from automotive_cosim.doors.assessment import CONFIG, read_assessment
+from automotive_cosim.doors.assessment import CONFIG, MOST_PARTICIPANTS, MOST_WORDS, read_assessment
 from automotive_cosim.doors.guard import MOST_BYTES
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan
@@ -156,6 +161,104 @@ def test_what_is_no_assessment_is_refused_in_one_line(text: str) -> None:
     with pytest.raises(UserError) as caught:
         read_assessment(text)
     assert "\n" not in str(caught.value)
+
+
+SEEDS = list(range(40_000))
+
+
+def test_an_assessment_is_counted_before_it_is_unfolded(monkeypatch: Any) -> None:
+    """The lists of one request of some hundred kilobytes can stand for millions of runs."""
+
+    def unfolds(plan: Plan) -> Any:
+        raise AssertionError("it was unfolded")
+
+    for name in ("jobs", "_episodes", "_drives"):
+        monkeypatch.setattr(Plan, name, unfolds)
+    began_s = time.process_time()
+    for config in ({"seeds": SEEDS}, {"seeds": SEEDS[:90], "repeats": 1000}, {"tasks": ["*"], "seeds": SEEDS}):
+        with pytest.raises(UserError, match="runs; "):
+            read_assessment(json.dumps({"participants": {"x": "http://127.0.0.1:9"}, "config": config}))
+    assert time.process_time() - began_s < 5.0
+
+
+@pytest.mark.parametrize(
+    ("participants", "config"),
+    [
+        ({str(number): f"http://127.0.0.1:{number}" for number in range(MOST_PARTICIPANTS + 1)}, {}),
+        ({"x": "http://127.0.0.1:9"}, {"tasks": [f"a*{number}" for number in range(MOST_WORDS + 1)]}),
+        ({"x": "http://127.0.0.1:9"}, {"scenarios": [str(number) for number in range(MOST_WORDS + 1)]}),
+    ],
+)
+def test_an_assessment_has_so_many_names_and_no_more(participants: Any, config: Any) -> None:
+    with pytest.raises(UserError, match="too many names"):
+        read_assessment(json.dumps({"participants": participants, "config": config}))
+
+
+class Told(EventQueue):  # type: ignore[misc]
+    """Keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.events: list[Any] = []
+
+    async def enqueue_event(self, event: Any) -> None:
+        self.events.append(event)
+
+
+def asked_for(config: Any) -> Any:
+    request = json.dumps({"participants": {"x": "http://127.0.0.1:9"}, "config": config})
+    message = new_message([new_text_part(request)], role=Role.ROLE_USER)
+    return SimpleNamespace(current_task=None, message=message, get_user_input=lambda: request)
+
+
+def test_no_request_is_read_where_all_others_wait(monkeypatch: Any) -> None:
+    where: list[bool] = []
+
+    def reads(text: str) -> Any:
+        where.append(threading.current_thread() is threading.main_thread())
+        raise UserError("not now")
+
+    monkeypatch.setattr(a2a, "read_assessment", reads)
+    told = Told()
+    asyncio.run(Assessor().execute(asked_for({}), told))
+    assert where == [False]
+    assert told.events[-1].status.state == TaskState.TASK_STATE_REJECTED
+
+
+def test_so_many_assessments_wait_and_no_more(monkeypatch: Any) -> None:
+    monkeypatch.setattr(a2a, "MOST_WAITING", 2)
+    begun, go_on = threading.Semaphore(0), threading.Event()
+
+    def reads(text: str) -> Any:
+        begun.release()
+        go_on.wait(20)
+        raise UserError("not now")
+
+    monkeypatch.setattr(a2a, "read_assessment", reads)
+
+    async def together() -> str:
+        assessor, last = Assessor(), Told()
+        first = [asyncio.create_task(assessor.execute(asked_for({}), Told())) for _ in range(2)]
+        for _ in first:
+            await asyncio.to_thread(begun.acquire)
+        await assessor.execute(asked_for({}), last)
+        go_on.set()
+        await asyncio.gather(*first)
+        assert not assessor.running
+        return " ".join(get_text_parts(last.events[-1].status.message.parts))
+
+    assert "2 assessments run or wait already" in asyncio.run(together())
+
+
+def test_of_tasks_the_newest_and_those_that_run_are_kept(monkeypatch: Any) -> None:
+    monkeypatch.setattr(a2a, "MOST_TASKS", 3)
+    store, context = a2a._Tasks({"1"}), ServerCallContext()
+
+    async def kept() -> list[str]:
+        for number in range(8):
+            await store.save(Task(id=str(number), context_id="c"), context)
+        return [str(number) for number in range(8) if await store.get(str(number), context)]
+
+    assert asyncio.run(kept()) == ["1", "6", "7"]
 
 
 def test_the_example_is_an_assessment_and_its_image_takes_what_agentbeats_gives(cli: Any) -> None:

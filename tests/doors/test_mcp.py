@@ -8,6 +8,7 @@ import socket
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,6 +16,8 @@ import pytest
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface
+from automotive_cosim.doors.shared import own_scenario
+from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.interface.functions import functions
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
@@ -228,7 +231,7 @@ def test_the_list_says_no_more_of_a_task_than_its_name_and_halves(service: Episo
         ("start", START | {"language": "es"}, "no language named 'es'"),
         ("start", START | {"language": "de"}, "has no phrasings in German"),
         ("start", START | {"channels": ["radar"]}, "no channel named 'radar'"),
-        ("start", START | {"scenario": "nowhere"}, "nowhere"),
+        ("start", START | {"scenario": "nowhere"}, "no scenario named 'nowhere'"),
         ("list_tasks", {"tasks": "nothing*"}, "nothing"),
         ("observe", {"episode_id": "0"}, "no episode '0'"),
         ("finish", {"episode_id": "0"}, "no episode '0'"),
@@ -238,6 +241,36 @@ def test_the_list_says_no_more_of_a_task_than_its_name_and_halves(service: Episo
 )
 def test_what_is_wrong_is_told(service: EpisodeService, tool: str, given: Json, said: str) -> None:
     assert said in inside(service, lambda client: refused(client, tool, given))
+
+
+ELSEWHERE = ("{}", "{}/own", "{}/../..", "/etc", "/", "~", ".", "..", "own/..", "\x00", "{}/plain")
+
+
+@pytest.mark.parametrize("named", ELSEWHERE)
+def test_a_client_finds_nothing_out_about_the_folders_of_this_machine(
+    service: EpisodeService, tmp_path: Path, named: str
+) -> None:
+    """It is told the same of what is there and of what is not."""
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "scenario.toml").write_text("", "utf-8")
+    (tmp_path / "plain").mkdir()
+    for name in (named.format(tmp_path), named.format(tmp_path) + "nowhere"):
+        told = inside(service, lambda client, name=name: refused(client, "start", START | {"scenario": name}))
+        assert "no scenario named" in told
+        assert "; " in told
+
+
+def test_a_client_names_the_scenarios_of_the_owners_folder(tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "scenario.toml").write_text("", "utf-8")
+    assert own_scenario("mine", tmp_path) == str(tmp_path / "mine")
+    assert [own_scenario(name, folder) for name in (None, "", "grid") for folder in (None, tmp_path)] == [
+        None, None, "", "", "grid", "grid",
+    ]  # fmt: skip
+    whole = str(tmp_path / "mine")
+    for name, folder in (("mine", None), ("mine/", tmp_path), ("./mine", tmp_path), (whole, tmp_path)):
+        with pytest.raises(UnknownNameError, match="no scenario named"):
+            own_scenario(name, folder)
 
 
 def test_an_action_may_come_as_text_and_channels_are_left_out(service: EpisodeService) -> None:

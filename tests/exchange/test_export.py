@@ -5,10 +5,13 @@ from __future__ import annotations
 import csv
 import json
 import math
+import struct
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
+import pyproj
 import pytest
 
 from automotive_cosim.agents import make_agent
@@ -17,6 +20,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.exchange.opendrive import pose_at, write_opendrive
 from automotive_cosim.exchange.openscenario import write_openscenario
 from automotive_cosim.exchange.recording import RecordedAct, Recording, read_recording
+from automotive_cosim.exchange.ssam import DIMENSIONS, FORMAT, TIMESTEP, VEHICLE, write_trajectories
 from automotive_cosim.exchange.trajectories import write_csv, write_parquet
 from automotive_cosim.formats.files import opened
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -61,7 +65,7 @@ def recording(tmp_path):
 @pytest.fixture
 def scenario(recording, tmp_path):
     road = tmp_path / "road.xodr"
-    road.write_text('<OpenDRIVE><signal id="c0_0"/><signal id="c0_1"/><signal id="other_0"/></OpenDRIVE>', "utf-8")
+    road.write_text('<OpenDRIVE><signal id="7" name="c0_0"/><signal id="8" name="c0_1"/></OpenDRIVE>', "utf-8")
     write_openscenario(recording, tmp_path / "a.xosc", road=road)
     return ET.parse(tmp_path / "a.xosc").getroot()
 
@@ -194,9 +198,71 @@ def test_lanes_lie_where_they_are_in_sumo_and_meet_in_junctions(drawn):
             assert math.dist(before[int(link.attrib["from"])][1], here[0]) < 0.02
             lane = next(each for each in way.iter("lane") if each.attrib["id"] == link.attrib["to"])
             assert math.dist(after[int(lane.find("link/successor").attrib["id"])][0], here[1]) < 0.02
+    location, header = sumo.find("location").attrib, root.find("header")
+    easting_m, northing_m = (-float(each) for each in location["netOffset"].split(","))
+    assert header.find("offset") is None
+    on_earth = pyproj.Proj(location["projParameter"])(easting_m + 500, northing_m + 300, inverse=True)
+    assert pyproj.Proj(header.findtext("geoReference"))(*on_earth) == pytest.approx((500, 300), abs=1e-3)
     keeps_left = drives_on_left(net)
     assert {road.get("rule") for road, _ in roads.values()} == {"LHT" if keeps_left else None}
     assert all((lane > 0) == keeps_left for _, each in roads.values() for lane in each)
+
+
+@pytest.mark.slow
+def test_curves_are_told_no_longer_than_they_are_and_signals_have_numbers(drawn):
+    _, root = drawn
+    at = (np.arange(20_000) + 0.5) / 20_000
+    for geometry in root.iter("geometry"):
+        if (curve := geometry.find("paramPoly3")) is not None and curve.get("pRange") == "normalized":
+            slopes = [
+                b + at * (2 * c + at * 3 * d)
+                for b, c, d in ([float(curve.attrib[f"{power}{axis}"]) for power in "bcd"] for axis in "UV")
+            ]
+            long_m = float(np.hypot(*slopes).mean())
+            assert 0 < long_m - float(geometry.attrib["length"]) < 1e-5
+    signals = [signal.attrib["id"] for signal in root.iter("signal")]
+    assert sorted(map(int, signals)) == list(range(len(signals)))
+    assert {control.attrib["signalId"] for control in root.iter("control")} <= set(signals)
+
+
+def read_trajectories(path):
+    """Kind and fields of each record of SSAM's format, by its specification."""
+    layouts, data, at = (FORMAT, DIMENSIONS, TIMESTEP, VEHICLE), path.read_bytes(), 0
+    assert [struct.calcsize(each) for each in layouts] == [6, 22, 5, 42]
+    while at < len(data):
+        kind, *values = struct.unpack_from(layouts[data[at]], data, at)
+        at += struct.calcsize(layouts[kind])
+        yield kind, values
+
+
+def test_trajectories_for_ssam_pass_through_the_recorded_places(recording, tmp_path):
+    write_trajectories(recording, tmp_path / "a.trj")
+    (first, form), (second, (_, scale, *bounds)), *records = read_trajectories(tmp_path / "a.trj")
+    assert (first, second, form[0], scale) == (0, 1, ord("L"), 1.0)
+    assert form[1] == pytest.approx(1.04)
+    found, at_s = {}, None
+    for kind, values in records:
+        if kind == 2:
+            (at_s,) = values
+            continue
+        number, link, lane, *line = values
+        assert (link, lane) == (0, 0)
+        found[number, round(at_s, 3)] = line
+        assert bounds[0] <= line[0] <= bounds[2]
+        assert bounds[1] <= line[1] <= bounds[3]
+        assert math.dist(line[0:2], line[2:4]) == pytest.approx(line[4], abs=1e-3)
+    assert len({at_s for _, at_s in found}) == 591, "tenths of a second"
+    for number, name in ((1, "ego"), (2, "line$1:2")):
+        for second in recording.road.seconds:
+            seen = [each for each in second.vehicles if each.vehicle_id == name]
+            at = number, second.at_s - recording.begin_s
+            assert (at in found) == bool(seen)
+            for each in seen:
+                assert math.dist(found[at][:2], (each.x_m, each.y_m)) < 1e-3
+                assert found[at][4:7] == pytest.approx((each.length_m, each.width_m, each.speed_mps))
+    assert (2, 15.5) not in found, "it was gone a half second later"
+    steps = [found[1, round(tenth / 10, 1)] for tenth in range(591)]
+    assert all(math.dist((0, 0), line[:2]) == pytest.approx(100, abs=0.1) for line in steps), "the circle"
 
 
 @pytest.mark.sumo
@@ -205,7 +271,7 @@ def test_an_episode_is_exported_by_command(tmp_path, simulations, cli):
     run_episode(
         setup, make_agent("oracle"), [RoadRecorder(tmp_path / "kept", setup.about)], simulations=simulations
     )
-    told = cli("export", tmp_path / "kept", "--openscenario", "1.3", "--opendrive", "--fcd", "--csv")
+    told = cli("export", tmp_path / "kept", "--openscenario", "1.3", "--opendrive", "--fcd", "--csv", "--ssam")
     assert told.code == 0, told.err
     folder = tmp_path / "kept" / "exchange"
     scenario = ET.parse(folder / "scenario.xosc").getroot()
@@ -228,6 +294,7 @@ def test_an_episode_is_exported_by_command(tmp_path, simulations, cli):
     fcd = list(ET.parse(folder / "fcd.xml").iter("vehicle"))
     assert len(rows) == len(fcd) == len(seen)
     assert (float(rows[0]["x_m"]), rows[0]["vehicle_id"]) == (float(fcd[0].attrib["x"]), fcd[0].attrib["id"])
+    assert sum(kind == 2 for kind, _ in read_trajectories(folder / "trajectories.trj")) > 10
     assert cli("export", tmp_path / "kept").code == 2
 
 

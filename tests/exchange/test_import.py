@@ -18,10 +18,12 @@ from automotive_cosim.traffic.options import read_configuration
 VEHICLE = """<ScenarioObject name="{}"><Vehicle name="car" vehicleCategory="car"><BoundingBox>
 <Center x="1.35" y="0" z="0.75"/><Dimensions width="1.8" length="4.5" height="1.5"/></BoundingBox>
 </Vehicle></ScenarioObject>"""
-SPEED = """<PrivateAction><LongitudinalAction><SpeedAction><SpeedActionDynamics/><SpeedActionTarget>
+SPEED = """<PrivateAction><LongitudinalAction><SpeedAction><SpeedActionDynamics
+dynamicsShape="step" dynamicsDimension="time" value="0"/><SpeedActionTarget>
 <AbsoluteTargetSpeed value="{}"/></SpeedActionTarget></SpeedAction></LongitudinalAction>
 </PrivateAction>"""
-LANES = """<PrivateAction><LateralAction><LaneChangeAction><LaneChangeActionDynamics/><LaneChangeTarget>
+LANES = """<PrivateAction><LateralAction><LaneChangeAction><LaneChangeActionDynamics
+dynamicsShape="step" dynamicsDimension="time" value="0"/><LaneChangeTarget>
 <RelativeTargetLane entityRef="other" value="{}"/></LaneChangeTarget></LaneChangeAction></LateralAction>
 </PrivateAction>"""
 TRAJECTORY = """<PrivateAction><RoutingAction><FollowTrajectoryAction/></RoutingAction></PrivateAction>"""
@@ -57,6 +59,9 @@ TEXT = f"""<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
+HERE = '<WorldPosition x="320" y="239.9"/>'
+
+
 def grid():
     return read_configuration(open_scenario("grid").config).net
 
@@ -79,7 +84,9 @@ def test_the_subset_becomes_a_scenario(file, tmp_path):
     assert other.route[0] == "c0c1"
     assert other.lane == 0
     assert other.position_m == pytest.approx(420 + 3.6 - 315.6, abs=1.0), "the front bumper"
-    assert other.actions == (VehicleAction(4.0, None, 1), VehicleAction(6.0, 10.8, 0))
+    moves, brakes = other.actions
+    assert moves == VehicleAction(4.0, lanes=1, name="moves", of="other", alone=True)
+    assert brakes == VehicleAction(6.0, 10.8, name="brakes", alone=True)
 
 
 @pytest.mark.slow
@@ -116,23 +123,25 @@ def test_an_imported_vehicle_does_what_the_file_says(file, tmp_path, simulations
 @pytest.mark.parametrize(
     ("before", "after", "told"),
     [
-        ('<WorldPosition x="320" y="239.9"/>', '<RoadPosition roadId="1"/>', r"line \d+: <RoadPosition> in"),
-        ('<WorldPosition x="320" y="239.9"/>', '<WorldPosition x="320" y="900"/>', "from the nearest lane"),
-        ('<WorldPosition x="320" y="239.9"/>', '<WorldPosition x="$x" y="2"/>', r"has the parameter x = \$x"),
+        (HERE, '<RoadPosition roadId="1"/>', r"line \d+: <RoadPosition> is on a road of an OpenDRIVE"),
+        (HERE, '<WorldPosition x="320" y="900"/>', "the nearest lane for cars, beside"),
+        (HERE, '<WorldPosition x="$x" y="2"/>', r"has x = \$x, but nothing declares x"),
         ('<WorldPosition x="420" y="231.4"/>', '<WorldPosition x="far" y="2"/>', "x = 'far', which is no number"),
         ('entityRef="ego">', 'entityRef="me">', "names no entity 'me'"),
         (LANES.format(1), SPEED.format(1).replace("Absolute", "Relative"), "<RelativeTargetSpeed>"),
         ('<EntityRef entityRef="other"/>', '<EntityRef entityRef="ego"/>', "acts on ego, which"),
         ("<CatalogLocations/>", "<CatalogLocations><VehicleCatalog/></CatalogLocations>", "<VehicleCatalog>"),
-        ('rule="greaterThan"', 'rule="lessThan"', "has the rule lessThan"),
-        (LANES.format(1), TRAJECTORY, r"line \d+: <FollowTrajectoryAction> fixes where"),
+        ('rule="greaterThan"', 'rule="equalTo"', "has rule = 'equalTo'; what is imported is greaterThan"),
+        (LANES.format(1), TRAJECTORY, r"line \d+: <FollowTrajectoryAction> in .* it fixes where"),
         ("<SimulationTimeCondition", "<TimeOfDayCondition", "<TimeOfDayCondition>"),
-        (GOAL, "", "neither AssignRouteAction nor AcquirePositionAction"),
+        ("road.xodr", "../road.xodr", "which is not beside it; copy it there"),
+        ("road.xodr", "/etc/passwd", "which is not beside it; copy it there"),
+        ("road.xodr", "file:///etc/passwd", "there is no road"),
     ],
 )  # fmt: skip
 def test_what_is_outside_is_refused_by_name_and_line(file, tmp_path, before, after, told):
     assert before in TEXT
     file.write_text(TEXT.replace(before, after), "utf-8")
     with pytest.raises(ScenarioError, match=told):
-        import_openscenario(file, tmp_path / "made", grid())
+        import_openscenario(file, tmp_path / "made", None if "road" in before else grid())
     assert not (tmp_path / "made").exists()

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.contracts import LaneShape, RoadShapes, SeenVehicle, SumoSignal, Weather
-from automotive_cosim.exchange.osi import write_osi
+from automotive_cosim.exchange.osi import trace_name, write_osi
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.run.road import RoadRecord, Second
 
@@ -48,12 +48,23 @@ def recording(tmp_path):
     return Recording(tmp_path, RoadRecord(RoadShapes(LANES, ()), tuple(seconds)), ())
 
 
-@pytest.fixture
-def messages(recording, tmp_path):
-    write_osi(recording, tmp_path / "trace_gt.osi", tmp_path / "road.xodr")
-    reader = osi_utilities.SingleTraceReader()
-    assert reader.open(tmp_path / "trace_gt.osi")
-    with reader:
+def opened(path):
+    reader = osi_utilities.MultiTraceReader() if path.suffix == ".mcap" else osi_utilities.SingleTraceReader()
+    assert reader.open(path)
+    return reader
+
+
+@pytest.fixture(params=[".osi", ".mcap"])
+def messages(request, recording, tmp_path):
+    name = trace_name(recording) + request.param
+    told = osi_utilities.parse_osi_trace_filename(name.replace(".mcap", ".osi"))
+    assert (told["message_type"], told["number_of_frames"]) == (osi_utilities.MessageType.GROUND_TRUTH, 10)
+    assert f"{told['timestamp']:%d %H:%M:%S}" == "05 22:59:55", "that of the first second, in UTC"
+    write_osi(recording, tmp_path / name, tmp_path / "road.xodr")
+    before = (tmp_path / name).read_bytes()
+    write_osi(recording, tmp_path / name, tmp_path / "road.xodr")
+    assert (tmp_path / name).read_bytes() == before
+    with opened(tmp_path / name) as reader:
         read = list(reader)
     assert {each.message_type for each in read} == {osi_utilities.MessageType.GROUND_TRUTH}
     return [each.message for each in read]
@@ -148,7 +159,5 @@ def test_no_two_things_share_an_id(messages):
 def test_a_record_without_lanes_or_weather_is_written(recording, tmp_path):
     seconds = tuple(replace(each, weather=None, local_time="") for each in recording.road.seconds)
     write_osi(replace(recording, road=RoadRecord(RoadShapes((), ()), seconds)), tmp_path / "trace_gt.osi")
-    reader = osi_utilities.SingleTraceReader()
-    assert reader.open(tmp_path / "trace_gt.osi")
-    with reader:
+    with opened(tmp_path / "trace_gt.osi") as reader:
         assert len(list(reader)) == len(seconds)

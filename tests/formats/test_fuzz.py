@@ -12,6 +12,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from zoneinfo import ZoneInfo
 
@@ -23,7 +24,6 @@ from hypothesis.vendor.pretty import RepresentationPrinter
 from automotive_cosim import scenarios
 from automotive_cosim.agents.answer import read as read_answer
 from automotive_cosim.agents.memory import Memory, Strategy
-from automotive_cosim.calibration.counts import read_counts
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType
 from automotive_cosim.errors import ActionError, UserError
@@ -130,7 +130,10 @@ def _kinds(folder: Path) -> Iterator[tuple[str, Kind]]:
     yield kind("FR.toml", rules, read_jurisdiction)
     yield kind("plan.toml", PLAN, lambda path: make_plan(read_plan(path)))
     yield kind("actions.jsonl", ACTIONS, read_script)
-    yield kind("counts.csv", COUNTS, lambda path: read_counts(path, ZoneInfo("Europe/Paris")))
+    if find_spec("automotive_cosim.studies"):
+        from automotive_cosim.studies.calibration.counts import read_counts
+
+        yield kind("counts.csv", COUNTS, lambda path: read_counts(path, ZoneInfo("Europe/Paris")))
     yield kind("answers/steps.jsonl", json.dumps(STEP), lambda path: Replay.read(path.parent))
     results = folder / "results"
     manifest = json.dumps({"format": 1, "plan": {"agents": ["oracle"]}, "starts": []})
@@ -350,7 +353,6 @@ from pathlib import Path
 from zoneinfo import ZoneInfo
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm import extract
-from automotive_cosim.calibration.counts import read_counts
 from automotive_cosim.run.store import read_trace
 from automotive_cosim.scenarios import open_scenario
 resource.setrlimit(resource.RLIMIT_DATA, ({memory}, {memory}))
@@ -359,6 +361,7 @@ for name in sys.argv[1:]:
     path = Path(name)
     try:
         if path.suffix == ".csv":
+            from automotive_cosim.studies.calibration.counts import read_counts
             read_counts(path, ZoneInfo("UTC"))
         elif "traces" in name:
             read_trace(path.parents[1], "a")

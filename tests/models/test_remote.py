@@ -1,6 +1,7 @@
 """The client against a server that is slow, cut off, malformed or refuses, over a real connection."""
 
 import base64
+import gzip
 import io
 import json
 import logging
@@ -8,6 +9,7 @@ import re
 import sys
 import threading
 import time
+import zlib
 from collections.abc import Callable, Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -24,7 +26,9 @@ from automotive_cosim.contracts import Action
 from automotive_cosim.errors import ActionError, ModelError, SetupError, UserError, install_hint
 from automotive_cosim.models import ChatMessage, make_model
 from automotive_cosim.models.apis import Chat, ChatTools
-from automotive_cosim.models.remote import _Endpoint
+from automotive_cosim.models.base import OUT_PER_S
+from automotive_cosim.models.refusal import pause_asked_s, reason, told
+from automotive_cosim.models.remote import BODY_LIMIT_BYTES, HIDDEN_TOKENS, _Endpoint
 from automotive_cosim.replay.make import Touches, provider_body, texts
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.jobs import EpisodeJob
@@ -32,6 +36,7 @@ from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
 
 KEY = "sk-a-very-secret-key-0123456789"
+LONG_KEY = "sk-ant-api03-kT7bQ9xW2mZ4rV6yL8pN0cJ5hG3fD1sA"
 
 Behave = Callable[[BaseHTTPRequestHandler], None]
 
@@ -742,6 +747,18 @@ def test_no_encoding_of_a_key_gets_into_a_record(before, after):
     assert clean("nothing of it") == "nothing of it"
 
 
+SPELLINGS = (str, str.upper, " ".join, ". ".join, lambda key: key.replace("-", "_"), lambda key: f"{key[:20]}...")
+"""However a model says a key; as long as twenty characters of it stand there, it is hidden."""
+
+
+@pytest.mark.parametrize("spell", SPELLINGS)
+def test_no_spelling_of_a_key_gets_into_a_record(spell):
+    clean = _Endpoint("local", None, LONG_KEY).clean
+    assert clean(f"It is [{spell(LONG_KEY)}]!") in ("It is [***]!", "It is [***...]!")
+    assert clean(f"{spell(LONG_KEY)} {spell(LONG_KEY)}").count("***") == 2
+    assert clean(f"{LONG_KEY[:15]} and {LONG_KEY[15:30]}") == f"{LONG_KEY[:15]} and {LONG_KEY[15:30]}"
+
+
 def test_no_part_of_a_key_is_left_where_a_text_is_cut(server):
     refusal = json.dumps({"error": {"message": "x" * 290 + KEY}}).encode()
     for body, status in ((b"x" * 70 + KEY.encode(), 200), (refusal, 400)):
@@ -753,3 +770,46 @@ def test_no_part_of_a_key_is_left_where_a_text_is_cut(server):
     finish = model().chat(ASK).finish
     assert finish.startswith("***?y")
     assert len(finish) == 40
+
+
+@pytest.mark.parametrize("packed", [gzip.compress, zlib.compress])
+def test_a_packed_answer_is_read_up_to_its_length_unpacked(server, packed):
+    server.behaviours = [lambda handler: send(handler, 200, packed(completion("hi")), Content_Encoding="gzip")]
+    assert model().chat(ASK).text == "hi"
+    assert server.headers[-1]["accept-encoding"] == "identity"
+    long = packed(b" " * (BODY_LIMIT_BYTES + 1))
+    assert len(long) < BODY_LIMIT_BYTES / 100
+    server.behaviours = [lambda handler: send(handler, 200, long, Content_Encoding="gzip")]
+    with pytest.raises(ModelError, match="the answer has over"):
+        model().chat(ASK)
+
+
+@pytest.mark.parametrize(
+    ("body", "encoding", "said"),
+    [(b"no archive", "gzip", "is damaged"), (b"anything", "br", "is packed by 'br', and nobody asked for that")],
+)
+def test_an_answer_packed_as_nobody_asked_is_tried_again(server, body, encoding, said):
+    server.behaviours = [lambda handler: send(handler, 200, body, Content_Encoding=encoding)]
+    with pytest.raises(ModelError, match=said):
+        model().chat(ASK)
+
+
+def test_no_more_tokens_are_believed_than_can_have_been(server):
+    server.behaviours = [
+        lambda handler: send(
+            handler, 200, completion("hi", prompt_tokens=10**9, completion_tokens=10**9, cached_tokens=10**9)
+        )
+    ]
+    reply = model("local/m?usd_per_million_in=1&usd_per_million_out=1").chat(ASK)
+    question = len(json.dumps({name: each for name, each in server.asked[-1].items() if name != "path"}))
+    assert question <= reply.tokens_in <= question + HIDDEN_TOKENS
+    assert reply.tokens_out <= OUT_PER_S * (1 + reply.seconds)
+    assert reply.cost_usd == pytest.approx((reply.tokens_in + reply.tokens_out) / 1e6)
+
+
+def test_a_refusal_of_very_many_reasons_is_read_in_no_time():
+    body = json.dumps({"errors": [f"reason {number}" for number in range(300_000)]}).encode()
+    began_s = time.process_time()
+    assert reason(told(body)).startswith("reason 0; ")
+    assert pause_asked_s({"retry-after": "9" * 10**6, "date": "x" * 10**6}, told(b"<script" * 300_000)) is None
+    assert time.process_time() - began_s < 5.0

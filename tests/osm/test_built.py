@@ -21,6 +21,7 @@ from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.ramps import in_words, widened
 from automotive_cosim.osm.roads import MappedRoad, describe, way_of
+from tests.osm import lost
 from tests.osm.maps import Map
 
 pytestmark = pytest.mark.sumo
@@ -609,3 +610,75 @@ def test_signs_at_what_netconvert_has_not_cost_no_map(build: Build, monkeypatch:
     monkeypatch.setattr(network, "patches", lambda *_: {"--edge-files": '<edges><edge id="99#0"/></edges>'})
     made, _ = row_of_crossings([{}], [{"s": {"highway": "stop"}}])
     assert "stop signs at junctions where netconvert gives right of way otherwise" in told(build(made))
+
+
+LISTED = (
+    *({f"{car}{key}": value} for car in ("access", "motor_vehicle") for key, value in (
+        (":both_ways", "no"), (":lanes:conditional", "no @ (07:00-09:00)|"), (":motorcar", "no"),
+        (":conditional", "no @ (sunset-sunrise)"), ("", "sometimes"), ("", "discouraged"),
+    )),
+    *({f"maxspeed{key}": value} for key, value in (
+        (":variable", "yes"), (":wet", "80"), (":lanes:conditional", "30 @ (22:00-06:00)|"), (":both_ways", "40"),
+        (":conditional", "30 @ (2026 May)"), ("", "signals"), ("", "national"), ("", "50|30"),
+    )),
+    *({f"turn{key}": value, "lanes": "3"} for key, value in (
+        (":lanes:both_ways", "left"), (":lanes", "left|right"), (":lanes:forward", "slide_left|")
+    )),
+    *({f"lanes:{key}": value, "lanes": "3"} for key, value in (
+        ("both_ways", "1"), ("reversible", "1"), ("bus:conditional", "1 @ (07:00-09:00)")
+    )),
+    *({"oneway" + key: value} for key, value in (
+        ("", "reversible"), ("", "alternating"), ("", "recommended"), (":conditional", "yes @ (sunset-sunrise)"),
+    )),
+    *({key: "yes"} for key in (
+        "toll", "ice_road", "4wd_only", "abandoned", "proposed", "seasonal", "stop", "give_way"
+    )),
+    {"toll:lanes": "yes|no"}, {"hov": "lane"}, {"hov:lanes": "lane|"}, {"taxi:lanes": "|designated"},
+    {"bus:lanes:conditional": "|designated @ (07:00-09:00)"}, {"priority": "forward"}, {"priority_road": "maybe"},
+    {"maxwidth": "1.8"}, {"maxheight": "1.7 m"}, {"junction": "jughandle"}, {"dual_carriageway": "yes"},
+)  # fmt: skip
+UNLISTED = (
+    *({f"maxspeed:{key}": "60"} for key in ("hgv", "bus", "trailer", "advisory", "hgv:forward")),
+    {"maxspeed:reason": "noise"}, {"oneway:bicycle": "no"}, {"access:bicycle": "yes"}, {"toll:hgv": "yes"},
+    {"toll:N3": "yes"}, {"bus": "yes"}, {"bus:conditional": "no @ (22:00-06:00)"}, {"hov": "yes"},
+    {"priority_road": "designated"}, {"maxheight": "4"}, {"maxheight": "default"}, {"lanes": "2"}, {"toll": "no"},
+    {"motor_vehicle:conditional": "no @ (weight>7.5)"}, {"maxspeed": "20 knots"}, {"source:maxspeed": "survey"},
+)  # fmt: skip
+
+
+def test_every_tag_about_cars_is_followed_or_listed(build: Build) -> None:
+    rungs = [*LISTED, *UNLISTED]
+    named = set(map(int, NUMBERS.findall(told(build(ladder(rungs))))))
+    assert [tags for number, tags in enumerate(rungs) if (FIRST + number in named) is not (tags in LISTED)] == []
+
+
+PRIORITY: tuple[tuple[dict[str, str], bool], ...] = (
+    ({"priority_road": "designated"}, True),
+    ({"priority_road": "yes_unposted"}, True),
+    ({"priority_road:forward": "yes"}, True),
+    ({"priority_road:backward": "yes"}, False),
+    ({"priority_road": "end"}, False),
+)
+
+
+def test_who_joins_a_priority_road_yields(build: Build) -> None:
+    made, ways = row_of_crossings([{"highway": "residential"} | tags for tags, _ in PRIORITY])
+    world = build(made)
+    for way, (tags, goes_first) in zip(ways, PRIORITY, strict=True):
+        states = {link.state for link in world.built.links.of[str(way)] if link.direction != "t"}
+        assert ("M" in states) is goes_first, tags
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[] if name in lost.SMALL else pytest.mark.proof) for name in lost.shown()],
+)
+def test_nothing_of_the_maps_of_others_is_lost(sumo: None, name: str) -> None:
+    source = lost.extracts().get(name)
+    if source is None:
+        pytest.skip("AUTOMOTIVE_COSIM_TEST_DATA names no folder with this extract")
+    found = lost.counts(source)
+    assert {kind: each.lost for kind, each in found.items() if each.lost} == {}
+    assert [str(found[kind]) for kind in lost.KINDS] == lost.shown()[name], (
+        "python -m tests.osm.lost renews the table"
+    )

@@ -15,7 +15,7 @@ from automotive_cosim.osm import extract, network
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import describe
-from automotive_cosim.traffic.congestion import Route
+from automotive_cosim.traffic.congestion import Congestion, Route
 from automotive_cosim.traffic.network import Edge
 
 ALONG_M = 230.0
@@ -73,21 +73,15 @@ def test_the_camera_stands_where_the_map_has_it(built: Built) -> None:
 
 
 def test_the_route_tells_how_far_the_camera_is(built: Built) -> None:
-    class Free:
-        def slow_edges(self) -> tuple[tuple[str, float], ...]:
-            return ()
-
-        def speed_mps(self, edge_id: str) -> float:
-            return 10.0
-
+    free = Congestion(built.network, lambda: ())
     edge = next(edge for edge in built.edges if edge.cameras_m)
-    route = Route([edge.edge_id], built.network, Free())
+    route = Route([edge.edge_id], built.network, free)
     (at_m,) = edge.cameras_m
     assert route.ahead(0, 0.0, None).camera_distance_m == at_m
     assert route.ahead(0, at_m - 1.0, None).camera_distance_m == pytest.approx(1.0)
     assert route.ahead(0, at_m + 1.0, None).camera_distance_m is None
     signed = replace(built.network, edges=built.network.edges | {edge.edge_id: replace(edge, sign="stop")})
-    ahead = Route([edge.edge_id], signed, Free()).ahead(0, 10.0, None)
+    ahead = Route([edge.edge_id], signed, free).ahead(0, 10.0, None)
     assert (ahead.next_sign, ahead.sign_distance_m) == ("stop", pytest.approx(edge.length_m - 10.0))
     assert route.ahead(0, 10.0, None).next_sign is None
 

@@ -89,12 +89,20 @@ def test_buses_keep_to_the_kerb_on_the_left_too() -> None:
     [
         ({"lanes": "1"}, [SHARED]),
         (ONE | {"lanes": "1"}, []),
-        ({"lanes": "0"}, ["lanes=0"]),
-        ({"lanes": "99"}, ["lanes=99"]),
-        ({"lanes:forward": "11"}, ["lanes:forward=11"]),
+        ({"lanes": "0"}, ["lanes=0, left out"]),
+        ({"lanes": "99"}, ["lanes=99, left out"]),
+        ({"lanes:forward": "11"}, ["lanes:forward=11, left out"]),
+        ({"lanes": "2;3"}, ["lanes=2;3, the lowest taken"]),
+        ({"lanes": "4", "lanes:forward": "2"}, []),
+        ({"lanes": "3", "lanes:forward": "2", "lanes:backward": "1"}, []),
+        ({"lanes": "4", "lanes:forward": "2", "lanes:backward": "1"},
+         ["lanes=4, lanes:forward=2, lanes:backward=1, which do not add up"]),
+        ({"lanes": "2", "lanes:forward": "2"}, ["lanes=2, lanes:forward=2, which do not add up"]),
+        (ONE | {"lanes": "2", "lanes:forward": "2"}, []),
+        ({"oneway": "-1", "lanes": "2", "lanes:forward": "2"}, ["lanes=2, lanes:forward=2, which do not add up"]),
         ({"lanes": "2"}, []),
     ],
-)
+)  # fmt: skip
 def test_impossible_lanes_are_told(tags: dict[str, str], told: list[str]) -> None:
     assert list(doubts(tags, directions(tags))) == told
 

@@ -100,7 +100,8 @@ def test_the_map_is_the_servers_with_its_licence(server: Server, whole: str, tmp
     (asked,) = server.asked
     assert "(48.2900000,1.5800000,48.3200000,1.6400000)" in asked, "south, west, north, east"
     assert "[timeout:180]" in asked
-    assert "speed_camera" in asked
+    for wanted in ("speed_camera", "give_way", "low_emission_zone", "is_in(48.3050000,1.6100000)", "connectivity"):
+        assert wanted in asked
 
 
 def test_a_busy_server_is_asked_again_after_the_pause_it_names(server: Server, whole: str, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
+from automotive_cosim.osm.links import read_links
 from automotive_cosim.osm.repair import SHORT_M, open_traps
 
 BUS, CAR = 'allow="bus taxi"', 'disallow="tram rail"'
@@ -43,7 +44,7 @@ def allowed(text: str) -> dict[str, str | None]:
 
 @pytest.mark.parametrize("length_m", [6.0, SHORT_M - 1, 200.0])
 def test_a_car_that_comes_in_on_one_side_only_is_let_across(length_m: float) -> None:
-    text, opened = open_traps(net(length_m))
+    text, opened = open_traps(net(length_m), read_links(net(length_m)))
     assert opened == ("mid",)
     assert allowed(text)["mid_1"] == "bus taxi passenger"
     assert allowed(text)[":b_1_0"] == "bus taxi", "it leads into a lane of the buses"
@@ -52,10 +53,10 @@ def test_a_car_that_comes_in_on_one_side_only_is_let_across(length_m: float) -> 
 
 def test_a_long_edge_whose_sides_are_chosen_before_keeps_its_bus_lane() -> None:
     text = net(200.0, sorted_before=True)
-    assert open_traps(text) == (text, ())
+    assert open_traps(text, read_links(text)) == (text, ())
 
 
 @pytest.mark.parametrize("lanes", [(BUS, CAR, CAR), (CAR, CAR, BUS), (CAR, CAR)])
 def test_a_lane_at_the_side_parts_nothing(lanes: tuple[str, ...]) -> None:
     text = net(6.0, lanes=lanes)
-    assert open_traps(text) == (text, ())
+    assert open_traps(text, read_links(text)) == (text, ())

@@ -7,7 +7,7 @@ import pytest
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, take_seats
 from automotive_cosim.cockpit.apps.phone.state import Thread
-from automotive_cosim.cockpit.apps.trip.state import TripMeter
+from automotive_cosim.cockpit.apps.trip import TripMeter
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.signals import ADAS, BODY, Signals
 from automotive_cosim.contracts import BoundingBox, Element

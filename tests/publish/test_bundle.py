@@ -17,6 +17,7 @@ from automotive_cosim.publish.verify import verify
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened, read_rows, read_trace, write_trace
+from tests.models.test_remote import LONG_KEY, SPELLINGS
 
 
 def plain_text(bundle):
@@ -63,14 +64,15 @@ def test_paths_are_cleaned_and_other_slashes_stay():
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("LAB_API_KEY", "sk-0123456789abcdef"), ("HF_TOKEN", "hf_0123456789abc")]
+    ("name", "value", "spell"),
+    [("LAB_API_KEY", LONG_KEY, spell) for spell in SPELLINGS] + [("hf_token", "hf_0123456789abc", str.title)],
 )
-def test_a_key_in_a_trace_is_refused_by_the_name_of_its_variable(folder, tmp_path, monkeypatch, name, value):
+def test_a_key_in_a_trace_is_refused_by_the_name_of_its_variable(folder, tmp_path, monkeypatch, name, value, spell):
     monkeypatch.setenv(name, value)
     write_bundle(folder, tmp_path / "fine.bundle")
     episode = next(row.id for row in read_rows(folder, EpisodeRow).values() if row.success is not None)
     lines = read_trace(folder, episode)
-    lines[0]["thought"] = f"my key is {value}"
+    lines[0]["thought"] = f"my key is {spell(value)}"
     write_trace(folder, episode, lines)
     with pytest.raises(UserError, match=name) as refused:
         write_bundle(folder, tmp_path / "b.bundle")

@@ -12,13 +12,13 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats import files
-from automotive_cosim.formats.files import open_file, parse_json, read_json, read_json_lines
-from automotive_cosim.publish import archive, limited
+from automotive_cosim.formats import bounds, limited
+from automotive_cosim.formats.files import file_sha256, open_file, parse_json, read_json, read_json_lines
+from automotive_cosim.formats.limited import LimitedProcesses
+from automotive_cosim.publish import archive
 from automotive_cosim.publish.bundle import write_bundle
-from automotive_cosim.publish.contents import NAME, file_sha256, read_contents
+from automotive_cosim.publish.contents import NAME, read_contents
 from automotive_cosim.publish.episodes import ROWS, check_trial
-from automotive_cosim.publish.limited import LimitedProcesses
 from automotive_cosim.publish.verify import verify
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -66,7 +66,7 @@ def test_a_call_that_takes_too_much_memory_is_refused_and_the_next_one_is_answer
     (tmp_path / "b").write_bytes(b"small")
     with LimitedProcesses(tmp_path / "b") as processes:
         with pytest.raises(UserError, match="more memory or processor time than a file of its size"):
-            processes.call(takes, 2 * limited.FREE_BYTES >> 20)
+            processes.call(takes, 2 * bounds.BUNDLE.free_bytes >> 20)
         assert processes.call(takes, 100) == 100 << 20
         assert list(processes.map(takes, [1, 2, 3])) == [1 << 20, 2 << 20, 3 << 20]
         with pytest.raises(UserError, match="not this"):
@@ -77,17 +77,17 @@ def test_a_call_that_takes_too_much_memory_is_refused_and_the_next_one_is_answer
 
 @pytest.mark.slow
 def test_a_larger_file_may_take_more(tmp_path, monkeypatch):
-    monkeypatch.setattr(limited, "FREE_BYTES", 2**28)
+    monkeypatch.setattr(limited, "BUNDLE", replace(bounds.BUNDLE, free_bytes=2**28))
     with (tmp_path / "b").open("wb") as file:
-        file.truncate(2 * limited.FREE_BYTES // limited.TIMES)
+        file.truncate(2 * 2**28 // bounds.BUNDLE.times)
     with LimitedProcesses(tmp_path / "b") as processes:
-        assert processes.call(takes, 5 * limited.FREE_BYTES >> 22)
+        assert processes.call(takes, 5 * 2**28 >> 22)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("what", "given"), [(spins, (100.0,)), (ends, ())])
 def test_a_call_that_takes_too_long_or_ends_its_process_is_refused(tmp_path, monkeypatch, what, given):
-    monkeypatch.setattr(limited, "FREE_S", 0)
+    monkeypatch.setattr(limited, "BUNDLE", replace(bounds.BUNDLE, free_s=0))
     (tmp_path / "b").write_bytes(b"small")
     with LimitedProcesses(tmp_path / "b") as processes, pytest.raises(UserError, match="processor time"):
         processes.call(what, *given)
@@ -95,7 +95,7 @@ def test_a_call_that_takes_too_long_or_ends_its_process_is_refused(tmp_path, mon
 
 def test_json_of_too_many_values_is_refused_before_it_is_parsed(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match="too many values"):
-        parse_json(lists(files.MOST_VALUES))
+        parse_json(lists(bounds.VALUES))
     most = 40_000
     for text in (lists(most).decode(), lists(most).replace(b"[]", b"{}")):
         with pytest.raises(ValueError, match="too many values"):
@@ -104,7 +104,7 @@ def test_json_of_too_many_values_is_refused_before_it_is_parsed(tmp_path, monkey
     path.write_bytes(lzma.compress(lists(most), preset=0))
     with pytest.raises(ValueError, match="too many values"):
         read_json(path, most)
-    monkeypatch.setattr(files, "MOST_VALUES", most)
+    monkeypatch.setattr(bounds, "VALUES", most)
     line = b"[" + b"[]," * (most // 8) + b"0]\n"
     path.write_bytes(gzip.compress(line * 3, 1))
     assert len(read_json_lines(path)) == 3
@@ -136,7 +136,7 @@ def test_so_is_that_of_a_drive(tmp_path, file):
 @pytest.mark.slow
 def test_references_that_grow_twofold_a_line_cost_a_bounded_time(unpacked, tmp_path, monkeypatch):
     """Each entry of the pool holds the one before twice: small to keep, and endless to look through."""
-    monkeypatch.setattr(limited, "FREE_S", 1)
+    monkeypatch.setattr(limited, "BUNDLE", replace(bounds.BUNDLE, free_s=1))
     path = judged_file(unpacked, judged(unpacked).id)
     whole = json.loads(lzma.decompress(path.read_bytes()))
     at = len(whole["pool"])

@@ -15,8 +15,9 @@ from typing import Any
 import pytest
 
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.publish import archive, episodes
-from automotive_cosim.publish.contents import NAME, file_sha256, read_contents
+from automotive_cosim.publish.contents import NAME, read_contents
 from automotive_cosim.publish.episodes import BY_REPLAY, ON_TRUST, check_trial
 from automotive_cosim.publish.problems import ROWS
 from automotive_cosim.publish.replays import replay

@@ -15,7 +15,7 @@ from automotive_cosim.report import templates
 from automotive_cosim.report.regression import as_json, changes, junit, markdown, plain
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.jobs import failed
+from automotive_cosim.run.executor import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 
@@ -317,7 +317,7 @@ def test_folders_of_drives_name_their_agents_when_they_share_none(tmp_path):
 
 
 def test_a_file_that_cannot_be_written_is_named_itself(tmp_path):
-    from automotive_cosim.formats.files import write_whole
+    from automotive_cosim.formats.writing import write_whole
 
     with pytest.raises(FileNotFoundError) as found:
         write_whole(tmp_path / "none" / "x.xml", "x")

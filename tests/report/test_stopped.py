@@ -7,13 +7,14 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim.cli.main import app
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.evaluation import all_tables, write_report
 from automotive_cosim.report.regression import changes, markdown
 from automotive_cosim.report.results import read_results, standings
 from automotive_cosim.report.summary import main, progress, rate_of
 from automotive_cosim.report.tables import Cell
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.jobs import failed
+from automotive_cosim.run.executor import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 
@@ -151,3 +152,33 @@ def test_a_catalogue_that_has_changed_since_invents_no_episodes(tmp_path, monkey
     assert read_results(older).coverage.planned == len(JOBS) - 2
     monkeypatch.setattr(type(PLAN), "jobs", lambda self: JOBS[:5])
     assert "4 episodes not in the plan" in str(read_results(older).coverage)
+
+
+PLANTED = {"tables": 2, "plots": 2, ".report.html.lock": 2, "report.html": 0, ".report.html.part": 0}
+"""Links in somebody else's folder, and the exit code of a report on it."""
+
+
+@pytest.mark.parametrize("name", PLANTED)
+def test_a_report_on_somebody_elses_folder_writes_through_no_link(tmp_path, name, cli):
+    folder = write(tmp_path / "e", range(len(JOBS)))
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "diary.txt").write_text("private")
+    (folder / name).symlink_to(outside if name in ("tables", "plots") else outside / "diary.txt")
+    done = cli("report", folder)
+    assert done.code == PLANTED[name]
+    if done.code:
+        assert done.err.count("\n") == 1
+        assert f"{name} is a link, and nothing here goes through one" in done.err
+    assert {path.name: path.read_text() for path in outside.iterdir()} == {"diary.txt": "private"}
+
+
+def test_of_two_reports_on_one_folder_one_is_refused(tmp_path, cli):
+    folder = write(tmp_path / "e", range(3))
+    with drafted(folder / "report.html") as other:
+        done = cli("report", folder)
+        other.write(b"the other one's")
+    assert done.code == 2
+    assert re.fullmatch(r".*another program is writing \S+report.html; wait.*\n", done.err)
+    assert (folder / "report.html").read_text() == "the other one's"
+    assert not (folder / "tables").exists()

@@ -16,7 +16,6 @@ from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_jobs, run_plan
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
-from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.kept import pictures, read_steps, read_trial
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
@@ -189,7 +188,7 @@ def test_what_an_agent_does_is_its_own_failure_and_nobody_elses_error(trouble):
     with pytest.raises(UserError, match="ModelError"):
         wanted.check()
     with opened(trouble / "e", wanted.as_json(), EpisodeRow) as store:
-        end = run_jobs(wanted.jobs(), store, partial(trials, Pictures.NONE), failed)
+        end = run_jobs(wanted.jobs(), store, partial(trials, Pictures.NONE))
     assert (end.judged, end.successes, end.errors) == (5, 1, 0)
     assert tries(trouble) == 3, "none was tried twice"
     ends = {row.agent: (row.end, row.agent_error) for row in read_rows(trouble / "e", EpisodeRow).values()}
@@ -278,7 +277,7 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
     if os.geteuid() == 0:
         # root writes anywhere, but not into a folder that is a file
         wanted = plan("oracle")
-        (tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part").mkdir()
+        (tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.lock").mkdir()
     else:
         (tmp_path / "e" / "traces").chmod(0o500)
     with pytest.raises(UserError, match=r"cannot write to .* rerun the command to resume"):
@@ -344,6 +343,16 @@ def test_kinds_that_were_not_timed_go_first_to_a_warm_simulation_and_last_to_a_c
     warm = [queue.take(cold.simulation, Counter(), timed) for _ in range(5)]
     assert [job is not None and job.kind in timed for job in warm] == [False] * 4 + [True]
     assert not queue
+
+
+def test_wherever_a_run_stops_the_contestants_of_all_but_one_instance_are_complete():
+    wanted = plan("always-alert", "no-op", "oracle", scenarios=["grid"], seeds=[0, 1], repeats=3).jobs()
+    queue, done, warm = JobQueue(wanted), Counter(), None
+    while job := queue.take(warm, Counter(), {each.kind for each in wanted}):
+        warm = job.simulation
+        done[job.instance] += 1
+        assert sum(judged < 3 for judged in done.values()) <= 1
+    assert len(done) * 3 == len(wanted)
 
 
 class Poor:

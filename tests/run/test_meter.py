@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -16,7 +18,7 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, UserError
 from automotive_cosim.models import ChatMessage, ModelReply
 from automotive_cosim.models.turns import LocalTurns
-from automotive_cosim.run.batch import SPENT, run_plan
+from automotive_cosim.run.batch import SPENT, run_plan, spent_before
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.meter import Meter, MeterClient, Metered, Spent, served
 from automotive_cosim.run.plan import Plan, make_plan
@@ -123,6 +125,15 @@ def test_dollars_need_prices(monkeypatch: pytest.MonkeyPatch) -> None:
     result = CliRunner().invoke(app, [*given, "--budget-usd", "5", "--dry-run"])
     assert isinstance(result.exception, UserError)
     assert "usd_per_million_in" in str(result.exception)
+
+
+def test_what_agents_tell_of_themselves_spends_no_budget(tmp_path: Path) -> None:
+    """A later start goes by the rows where nothing else was noted."""
+    rows = {model: SimpleNamespace(model=model, tokens_in=7, tokens_out=3, cost_usd=0.5) for model in ("none", "m")}
+    store: Any = SimpleNamespace(rows=rows, folder=tmp_path)
+    assert spent_before(store) == Spent(10, 0.5)
+    rows["none"].tokens_in, rows["none"].cost_usd = 10**9, 1e9
+    assert spent_before(store) == Spent(10, 0.5)
 
 
 # --- over several workers ---------------------------------------------------------------------------------------

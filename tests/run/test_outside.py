@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from automotive_cosim.agents import AgentSettings, make_agent
+from automotive_cosim.agents import AgentSettings, Stage, StageName, make_agent
 from automotive_cosim.agents.leftovers import remove, tree
 from automotive_cosim.agents.wire import LONGEST_BYTES, MOST_VALUES
 from automotive_cosim.contracts import Action, ActionType
@@ -483,6 +483,21 @@ def test_pictures_reach_the_model_and_its_answer_comes_back_whole(fork_server, o
     ((message,),) = model.asked
     assert len(message.pictures) == 2
     assert all(picture.startswith(b"\x89PNG") for picture in message.pictures)
+
+
+def test_what_a_model_said_and_cost_is_told_by_this_side_alone(fork_server):
+    """Whoever wrote the agent cannot forge its model's figures, nor leave an answer out."""
+    one, two = ModelReply("one", 7, 8, 0.5), ModelReply("two", 70, 80, 5.0)
+    forged = Stage(StageName.INTERPRET, "I", 3.0, ModelReply("other", -5, 10**15, float("-inf"))).as_json()
+    with closing(OutsideAgent(fork_server, "t3a", chat_model=Model(one))) as agent:
+        for said, told, replies in (
+            ([one, two], [forged, forged], [one, two]),
+            ([one, two], [forged, forged | {"reply": None}], [one, None, two]),
+            ([one], [forged, forged], [one, None]),
+            ([one], [], [one]),
+        ):
+            agent._replies = said
+            assert [stage.reply for stage in agent._stages(4.0, told)] == replies
 
 
 def test_an_agent_reads_the_format_of_its_model_from_the_whole_name(fork_server, observation):

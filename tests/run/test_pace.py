@@ -47,6 +47,9 @@ class Planned:
     wall_s: float = 1e9
     warm_up_weight: float = 1.0
 
+    def planned(self) -> JobRow:
+        return JobRow(id=self.id)
+
     def row(self) -> JobRow:
         error = OUT_OF_REACH if self.is_out_of_reach else None
         return JobRow(id=self.id, error=error, error_kind=error, wall_seconds=self.own_s)
@@ -140,7 +143,7 @@ def play(
     def tell(progress: Progress[JobRow]) -> None:
         told.append((clock.now_s, progress.left_s, progress.planned - progress.done))
 
-    end = run_jobs(jobs, clock, nobody, given_up, executor=clock, tell=tell)  # type: ignore[arg-type, misc, call-overload]
+    end = run_jobs(jobs, clock, nobody, executor=clock, tell=tell)  # type: ignore[arg-type, misc, call-overload]
     assert end.done == end.planned == len(jobs)
     return told
 
@@ -148,10 +151,6 @@ def play(
 @contextmanager
 def nobody() -> Iterator[None]:
     yield
-
-
-def given_up(job: Planned, kind: str, why: str) -> JobRow:
-    return JobRow(id=job.id, error=why, error_kind=kind)
 
 
 def evaluation(
@@ -270,9 +269,7 @@ def test_the_time_left_ends_with_the_budget(monkeypatch):
         told.append((clock.now_s, progress.left_s, progress.budget))
 
     jobs = alike(1, 100, 10.0, 0.0)
-    end = run_jobs(
-        jobs, clock, nobody, given_up, executor=clock, limit=SpendingMeter(clock), budget=BUDGET, tell=tell
-    )  # type: ignore[arg-type, misc, call-overload]
+    end = run_jobs(jobs, clock, nobody, executor=clock, limit=SpendingMeter(clock), budget=BUDGET, tell=tell)  # type: ignore[arg-type, misc, call-overload]
     assert end.stopped == "spent"
     assert told[0] == (0.0, None, "2,000 of 2,500 tokens left")
     known = [(now_s, left_s) for now_s, left_s, _ in told if left_s is not None and now_s > 60]

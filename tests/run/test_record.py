@@ -4,7 +4,7 @@ import os
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.kept import read_steps, read_trial
 from automotive_cosim.run.record import check_folder, default_folder

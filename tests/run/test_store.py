@@ -101,7 +101,7 @@ def test_two_evaluations_in_one_folder_are_refused(program, tmp_path):
     other = program(sys.executable, "-c", script, tmp_path / "e", stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     assert other.stdout is not None
     assert other.stdout.readline() == "in\n"
-    with pytest.raises(UserError, match="another evaluation"), opened(tmp_path / "e", PLAN, JobRow):
+    with pytest.raises(UserError, match="another program is writing to"), opened(tmp_path / "e", PLAN, JobRow):
         pass
     other.kill()
     other.wait()

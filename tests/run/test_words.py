@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.cockpit.actions import FIELDS
+from automotive_cosim.cockpit.actions import FIELDS, action_in_words
 from automotive_cosim.contracts import (
     NO_LIMIT,
     Action,
@@ -16,7 +16,7 @@ from automotive_cosim.contracts import (
     LimitSource,
     RoadHere,
 )
-from automotive_cosim.run.words import action_in_words, is_over, limit_in_words, road_in_words
+from automotive_cosim.run.words import is_over, limit_in_words, road_in_words
 
 VALUES = {
     "text": "hello",

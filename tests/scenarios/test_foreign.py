@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Callable
 from contextlib import closing
 from itertools import pairwise
 from pathlib import Path
@@ -14,20 +13,25 @@ import pytest
 from automotive_cosim import scenarios
 from automotive_cosim.contracts import EgoEnd
 from automotive_cosim.envs.cockpit import CockpitEnv
-from automotive_cosim.errors import ScenarioError, UnknownNameError
+from automotive_cosim.errors import ScenarioError, UnknownNameError, UserError
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.scenarios.routes import LONG_M, chosen_trips, edges_at
 from automotive_cosim.scenarios.variant import write_variant
-from automotive_cosim.studies.congestion.plan import CongestionPlan
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 from automotive_cosim.traffic.ways import way_through
-from tests.scenarios.beside_sumo import INTERVAL_S, OTHERS, beside, made
 
 GRID = scenarios.load("grid").folder
+TOML = "scenario.toml"
+
+OTHERS = {
+    "ingolstadt1": "ingolstadt/ingolstadt1/ingolstadt1.sumocfg",
+    "ingolstadt7": "ingolstadt/ingolstadt7/ingolstadt7.sumocfg",
+    "bologna": "bologna/acosta/run.sumocfg",
+}
 
 OUTPUTS = '<output><summary-output value="summary.xml"/><fcd-output value="fcd.xml"/></output>'
 DETECTOR = '<e1Detector id="d" lane="c1c2_0" pos="50" period="60" file="detector.xml"/>'
@@ -76,8 +80,6 @@ def test_a_configuration_is_read_for_what_it_says(foreign: Path) -> None:
         0.5,
         None,
     )
-    assert CongestionPlan(str(foreign)).scene().sumo.step_length_s == 0.5
-    assert CongestionPlan(str(foreign), step_s=1.0).scene().sumo.step_length_s == 1.0
     assert scenario.weather == ()
     assert str(scenario.start.tzinfo) == "Europe/Paris"
     after_midnight_s = scenario.start.hour * 3600 + scenario.start.minute * 60 + scenario.start.second
@@ -86,23 +88,6 @@ def test_a_configuration_is_read_for_what_it_says(foreign: Path) -> None:
     assert "runs as `sumo -c` runs it" in runs_with
     assert "step-length" not in runs_with
     assert without == "town.sumocfg runs without its summary-output, fcd-output"
-
-
-@pytest.mark.parametrize("name", scenarios.shipped())
-def test_without_an_ego_every_road_is_as_in_sumo(name: str, sumo: None) -> None:
-    ours, sumos = beside(scenarios.load(name).config, 10.0, INTERVAL_S, trips=False)
-    assert ours.edges == sumos.edges != []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["all classes", *OTHERS])
-def test_without_an_ego_every_vehicle_drives_as_in_sumo(
-    name: str, tmp_path: Path, data_of_others: Callable[[str], Path], sumo: None
-) -> None:
-    ours, sumos = beside(data_of_others(OTHERS[name]) if name in OTHERS else made(tmp_path))
-    assert dict(ours.trips.items() - sumos.trips.items()) == {}
-    assert len(ours.trips) > 50
-    assert ours == sumos
 
 
 def test_what_works_in_parallel_and_other_settings_that_are_not_kept_are_told(
@@ -363,3 +348,62 @@ def test_a_copy_with_another_demand_has_the_configurations_files_and_no_others(t
     assert [path.name for path in files["route-files"]] == ["mine.rou.xml"]
     named = {path.name for paths in files.values() for path in paths}
     assert {path.name for path in there.iterdir()} == named | {"grid.sumocfg", "record.json"}
+
+
+@pytest.fixture
+def given(tmp_path: Path) -> Path:
+    """Somebody's scenario, with more in its folder than its configuration names, and somebody else's secrets."""
+    here, outside = tmp_path / "here", tmp_path / "outside"
+    shutil.copytree(GRID, here)
+    outside.mkdir()
+    for name in ("private.xml", "private.md"):
+        (outside / name).write_text("<additional/>")
+    (here / "parts").mkdir()
+    (here / "parts" / "inner.xml").write_text("<additional/>")
+    (here / "outer.xml").write_text('<additional><include href="parts/inner.xml"/></additional>')
+    (here / "diary.txt").touch()
+    (here / "endless").symlink_to("/dev/zero")
+    (here / "all").symlink_to(outside)
+    config = here / "grid.sumocfg"
+    more = '<additional-files value="outer.xml"/>'
+    config.write_text(config.read_text().replace("</configuration>", f"{more}</configuration>"))
+    return here
+
+
+def _copy(given: Path) -> Path:
+    there = given.parent / "there"
+    scenario = open_scenario(given)
+    routes = ("mine.rou.xml", '<routes><trip id="a" depart="0" from="c0c1" to="c2c3"/></routes>')
+    write_variant(there, scenario, read_configuration(scenario.config), routes, ("record.json", {}))
+    return there
+
+
+def test_a_copy_has_the_files_that_its_files_name_and_no_others(given: Path) -> None:
+    there = _copy(given)
+    assert {path.relative_to(there).as_posix() for path in there.rglob("*") if path.is_file()} == {
+        "README.md", "grid.net.xml", "grid.sumocfg", "mine.rou.xml", "outer.xml", "parts/inner.xml", "record.json",
+        "scenario.toml",
+    }  # fmt: skip
+    assert open_scenario(there).sumo.scale == 1.0
+    with pytest.raises(UserError, match="exists; give --out"):
+        _copy(given)
+
+
+@pytest.mark.parametrize(
+    "name", ["README.md", "grid.net.xml", "outer.xml", "parts/inner.xml", "parts", "scenario.toml"]
+)
+def test_a_copy_goes_through_no_link_out_of_the_folder_and_leaves_nothing(given: Path, name: str) -> None:
+    inside, moved = given / name, given.parent / "outside" / "moved"
+    inside.rename(moved)
+    inside.symlink_to(moved)
+    with pytest.raises(UserError, match=r"is a link that leads out of .*put the file itself there") as refused:
+        _copy(given)
+    assert "\n" not in str(refused.value)
+    assert {path.name for path in given.parent.iterdir()} == {"here", "outside"}
+
+
+def test_a_copy_is_bounded(given: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("automotive_cosim.scenarios.variant.MOST_COPIED_BYTES", 1000)
+    with pytest.raises(UserError, match=r"grid.net.xml is too large to be copied"):
+        _copy(given)
+    assert {path.name for path in given.parent.iterdir()} == {"here", "outside"}

@@ -14,16 +14,13 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from automotive_cosim.formats.layout import LIVE
+from automotive_cosim.formats.layout import LIVE, WATCHED
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.kept import shown
 from automotive_cosim.run.row import as_json
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.server import WebServer
 from automotive_cosim.serve.study import PeopleStudy
-from automotive_cosim.studies.live import WATCHED
-from automotive_cosim.studies.plan import StudyPlan
-from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
 from automotive_cosim.tasking.task import Dimension, Module
 
 HOSTILE = "<img src=x onerror=\"document.title='broken in'\">"
@@ -177,6 +174,10 @@ def write_evaluation(
 
 def write_study(folder: Path) -> Path:
     """A study of rerouting in the small scenario: a decision with another way, and one of an older version."""
+    pytest.importorskip("automotive_cosim.studies")
+    from automotive_cosim.studies.reroute.plan import StudyPlan
+    from automotive_cosim.studies.reroute.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
+
     plan = StudyPlan(scenario="grid", seeds=(0,), policies=("never", "always"))
     job = plan.jobs()[0]
     manifest = {"format": 1, "plan": plan.as_json(), "starts": [{"started": "2026-11-22T18:00:00"}]}

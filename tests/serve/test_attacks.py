@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+import http.client
 import json
 import os
 import shutil
 import socket
 import threading
+import time
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from urllib.parse import quote
 
-from automotive_cosim.formats.files import MOST_VALUES
-from automotive_cosim.run.road_recorder import is_being_written
-from automotive_cosim.serve.server import MOST_BYTES
+import pytest
+
+from automotive_cosim.formats.bounds import VALUES
+from automotive_cosim.formats.writing import is_being_written
+from automotive_cosim.serve import server as server_module
+from automotive_cosim.serve.dealing import PeoplePlan
+from automotive_cosim.serve.play import Game
+from automotive_cosim.serve.server import MOST_BYTES, WebServer
+from automotive_cosim.serve.study import PeopleStudy
 from tests.laws import over
 
 from .conftest import HOSTILE, Browser, write_evaluation, write_record
@@ -76,7 +85,7 @@ def test_links_in_an_evaluation_do_not_lead_out(serving: Serving, tmp_path: Path
 def test_json_that_grows_when_it_is_read_is_refused_and_hides_nothing(serving: Serving, tmp_path: Path) -> None:
     write_record(tmp_path / "good", goal=HOSTILE)
     for name, text in (
-        ("many", "[" + "[]," * (MOST_VALUES // 2 + 1) + "0]"),
+        ("many", "[" + "[]," * (VALUES // 2 + 1) + "0]"),
         ("deep", "[" * 200_000 + "]" * 200_000),
         ("digits", '{"goal": ' + "9" * 10_000 + "}"),
         ("list", "[1]"),
@@ -147,7 +156,7 @@ def test_a_body_of_any_kind_gets_an_answer(body, status, serving, tmp_path):
     assert browser("/api/runs").status == 200
 
 
-@over(["-1", "1e9", "x", "99999999999", "+5", "٣"])
+@over(["-1", "1e9", "x", "99999999999", "9" * 5000, "+5", "٣"])
 def test_a_length_that_is_none_is_refused(length, serving, tmp_path):
     browser = serving(tmp_path)
     port = browser.server.server_port
@@ -157,6 +166,116 @@ def test_a_length_that_is_none_is_refused(length, serving, tmp_path):
         raw.sendall((head + cookie + f"Content-Length: {length}\r\n\r\n{{}}").encode())
         assert raw.recv(100).split()[1] in (b"413", b"400")
     assert json.loads(browser("/api/runs").body)["records"] == []
+
+
+def raw(server: WebServer, head: str, *, to_the_end: bool = True) -> bytes:
+    """What comes back for the bytes of a head."""
+    with socket.create_connection(("127.0.0.1", server.server_port), timeout=20) as line:
+        line.sendall(head.encode("latin-1"))
+        answer = b""
+        while chunk := line.recv(65536):
+            answer += chunk
+            if not to_the_end:
+                break
+    return answer
+
+
+@over(
+    ["/", "/%0d%0aX-Made:of-a-path", "/\xe9", "//evil.example/", "/%2f%2fevil.example", "/x%00", "/" + "a" * 9000]
+)
+def test_no_header_is_made_of_a_path(path, serving, tmp_path):
+    server = serving(tmp_path).server
+    port = server.server_port
+    head = f"GET {path}?token={server.token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nConnection: close\r\n\r\n"
+    lines = raw(server, head).split(b"\r\n\r\n")[0].decode("latin-1").splitlines()
+    assert lines[0].split()[1] == "303"
+    assert [line for line in lines if line.lower().startswith("location")] == ["Location: /"]
+    assert not [line for line in lines if line.startswith("X-Made")]
+
+
+@over(
+    [
+        ("GET http://[ HTTP/1.1", "", 400),
+        ("GET /api/runs?skip=%ff&%00=\xff HTTP/1.1", "", 200),
+        ("GET /%ff%fe HTTP/1.1", "", 404),
+        ("GET /api/tasks/%d9%a3 HTTP/1.1", "", 404),
+        ("GET /" + "a" * 40_000 + " HTTP/1.1", "", 414),
+        ("GET / HTTP/1.1", "X-Long: " + "a" * 40_000 + "\r\n", 431),
+        ("GET / HTTP/1.1", "".join(f"X-{n}: {'a' * 500}\r\n" for n in range(90)), 431),
+        ("GET / HTTP/1.1", 'Cookie: a="' + "\\" * 20_000 + "\r\n", 403),
+        ("GET / HTTP/1.1", "Cookie: \xff\xfe; =; ;;==\r\n", 403),
+        ("BREW / HTTP/1.1", "", 501),
+        ("GET / HTTP/9.9", "", 505),
+    ]
+)
+def test_an_odd_request_gets_an_answer(line, headers, status, serving, tmp_path):
+    server = serving(tmp_path).server
+    port = server.server_port
+    own = "" if headers.startswith("Cookie") else f"Cookie: automotive_cosim_{port}={server.token}\r\n"
+    head = f"{line}\r\nHost: 127.0.0.1:{port}\r\nConnection: close\r\n{own}{headers}\r\n"
+    began_s = time.process_time()
+    assert int(raw(server, head, to_the_end=False).split()[1]) == status
+    assert time.process_time() - began_s < 1.0
+
+
+@over(["1e999", "-1e999", "NaN", "1" + "0" * 400, "true", '"x"', "[]", "null"])
+def test_an_odd_number_gets_an_answer(speed, serving, tmp_path):
+    browser = serving(tmp_path, game=Game(tmp_path))
+    own = f"http://127.0.0.1:{browser.server.server_port}"
+    assert browser("/api/play/pace", "POST", body=f'{{"speed": {speed}}}', Origin=own).status == 422
+
+
+def test_connections_without_a_token_keep_the_owner_out_neither_by_number_nor_by_time(
+    serving: Serving, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(server_module, "MOST_CONNECTIONS", 8)
+    browser = serving(tmp_path)
+    own = browser.server
+    before = threading.active_count()
+    idle = [socket.create_connection(("127.0.0.1", own.server_port), timeout=20) for _ in range(40)]
+    try:
+        assert browser("/api/runs").status == 200
+        assert threading.active_count() <= before + 8 + 2
+        ended = sum(each.recv(1) == b"" for each in idle[:20])
+        assert ended == 20, "the oldest make room"
+        monkeypatch.setattr(server_module, "STRANGER_S", 0.0)
+        trickling = idle[-1]
+        assert trickling.recv(1) == b"", "none stays for long"
+    finally:
+        for each in idle:
+            each.close()
+
+
+def test_a_connection_of_the_owner_makes_no_room(
+    serving: Serving, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(server_module, "MOST_CONNECTIONS", 2)
+    browser = serving(tmp_path)
+    port = browser.server.server_port
+    own = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+    sent = {"Host": f"127.0.0.1:{port}", "Cookie": f"automotive_cosim_{port}={browser.server.token}"}
+    for _ in range(3):
+        own.request("GET", "/api/runs", headers=sent)
+        line, answer = own.sock, own.getresponse()
+        assert (answer.status, answer.read(), own.sock) == (200, b'{"records":[]}', line)
+        for _ in range(5):
+            with socket.create_connection(("127.0.0.1", port), timeout=20) as stranger:
+                stranger.sendall(b"GET / HTT")
+    own.close()
+
+
+def test_who_takes_part_is_given_nothing_of_the_owners_game(serving: Serving, tmp_path: Path) -> None:
+    """Both can run on one server; a participant is known by a seat, and without one plays nothing."""
+    plan = PeoplePlan(("heron",), ("road_speed_80_in_50", "hvac_fan_max"))
+    with closing(PeopleStudy(plan, tmp_path / "mine")) as study:
+        browser = serving(tmp_path, game=Game(tmp_path / "own"), study=study)
+        own = f"http://127.0.0.1:{browser.server.server_port}"
+        person = browser.server.people_token
+        for path in ("/api/study/play", "/api/study/play/screen", "/api/study/play?seat="):
+            assert browser(path, token=person).status == 422
+        for path in ("/api/study/play/act", "/api/study/play/leave"):
+            refused = browser(path, "POST", token=person, body="{}", Origin=own)
+            assert (refused.status, "choose your code name" in refused.json["error"]) == (422, True)
 
 
 IDS = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-from automotive_cosim.run.road_recorder import is_being_written
+from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.serve.observers import StudyObservers
 
 

@@ -14,9 +14,10 @@ import pytest
 
 from automotive_cosim.contracts.given import GeoInput
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
+from automotive_cosim.formats.writing import is_being_written, mark_as_written
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.serve import catalogue
+from automotive_cosim.serve.server import WebServer
 from automotive_cosim.tasking.task import Basis
 from automotive_cosim.tasks import CATALOGUE
 
@@ -66,9 +67,15 @@ def test_the_list_tells_runs_of_a_pair_apart(serving: Serving, tmp_path: Path) -
     given = Conditions()
     write_record(tmp_path / "with_place", conditions=given.as_json())
     write_record(tmp_path / "without_place", conditions=replace(given, geo=GeoInput.NONE).as_json())
-    records = serving(tmp_path)("/api/runs").json["records"]
-    told = {each["name"]: each["conditions"] for each in records}
-    assert told == {"with_place": [], "without_place": ["geo none"]}
+    records = {each["name"]: each for each in serving(tmp_path)("/api/runs").json["records"]}
+    assert {name: each["conditions"] for name, each in records.items()} == {
+        "with_place": [],
+        "without_place": ["geo none"],
+    }
+    known, withheld = records["with_place"], records["without_place"]
+    assert (known["beside"], withheld["beside"]) == (withheld["id"], None)
+    with WebServer([tmp_path], port=0) as server:
+        assert server.address.endswith(f"#/beside/{known['id']}/{withheld['id']}")
 
 
 def test_hostile_names_stay_text(serving: Serving, tmp_path: Path) -> None:

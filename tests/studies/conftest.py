@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.traffic import sumo_programs
 
 NODES = {

@@ -14,14 +14,14 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.batches import ProgressView
 from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.results import report
-from automotive_cosim.cli.study import app
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.incidents import EgoIncident
 from automotive_cosim.run.batch import Progress
-from automotive_cosim.studies.congestion.drive import run_congestion
+from automotive_cosim.studies.commands import app
+from automotive_cosim.studies.congestion.drive import CONGESTION
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows
 from automotive_cosim.studies.congestion.page import answer, warnings
-from automotive_cosim.studies.congestion.plan import MEASURES, CongestionPlan, make_congestion
+from automotive_cosim.studies.congestion.plan import MEASURES, CongestionPlan
 from automotive_cosim.studies.congestion.results import (
     CongestionStudy,
     NetworkPart,
@@ -29,12 +29,12 @@ from automotive_cosim.studies.congestion.results import (
     delay_h,
     indices,
     queue_m,
-    read_congestion,
     throughput_per_h,
 )
 from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, FlowState, FlowSums, MeasureOutcome
 from automotive_cosim.studies.congestion.tables import emissions, whole, worst
 from automotive_cosim.studies.congestion.words import PHRASES, name_of
+from automotive_cosim.studies.plan import plan_of
 from automotive_cosim.studies.versions import pairs
 
 from .conftest import Draw
@@ -185,7 +185,7 @@ def test_a_plan_that_cannot_be_run_is_refused(wrong: dict[str, object], told: st
 
 
 def test_plans_come_back_from_their_manifest() -> None:
-    assert make_congestion(PLAN.as_json()) == PLAN
+    assert plan_of(CongestionPlan, PLAN.as_json()) == PLAN
 
 
 CARS = """<routes>
@@ -207,13 +207,13 @@ def driven(two_ways: Draw, tmp_path_factory: pytest.TempPathFactory) -> Path:
         emissions=True,
     )
     folder = tmp_path_factory.mktemp("congestion") / "study"
-    run_congestion(plan, folder)
+    CONGESTION.run(plan, folder)
     return folder
 
 
 def test_roadworks_cost_what_can_be_reckoned(driven: Path) -> None:
     """1,000 m at 2.5 instead of 10 m/s take 300 s more; a car every 20 s makes 15 vehicle-hours an hour."""
-    found = read_congestion(driven)
+    found = CongestionStudy.read(driven)
     assert not found.errors
     (_, before), (_, works), (_, nobody), (_, all_) = (next(found.outcomes(each)) for each in found.measures)
     assert found.measures[0] == ""
@@ -239,8 +239,8 @@ def test_who_is_advised_leaves_the_roadworks(two_ways: Draw, tmp_path: Path) -> 
         minutes=20.0,
         warm_up_s=600.0,
     )
-    run_congestion(plan, tmp_path / "study")
-    found = read_congestion(tmp_path / "study")
+    CONGESTION.run(plan, tmp_path / "study")
+    found = CongestionStudy.read(tmp_path / "study")
     without, advised, deaf = (delay_h(plan, next(found.outcomes(each))[1]) for each in found.measures)
     assert advised < 0.6 * without
     assert deaf == without

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import CosimError
-from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes
-from automotive_cosim.studies.days import (
+from automotive_cosim.run.executor import tried
+from automotive_cosim.studies.days.days import (
     WEEK,
     DaysJob,
     DaysPlan,
@@ -18,10 +18,11 @@ from automotive_cosim.studies.days import (
     DaysStudy,
     StudyDay,
     has_settled,
-    make_days,
     run_chain,
 )
-from automotive_cosim.studies.days_page import answer, charts, tables, warnings
+from automotive_cosim.studies.days.page import answer, charts, tables, warnings
+from automotive_cosim.studies.equilibrium.gap import DrivenTrip, EdgeTimes
+from automotive_cosim.studies.plan import plan_of
 
 Draw = Callable[..., Path]
 PLAN = DaysPlan("grid", shares=(0.0, 1.0), seeds=(0, 1))
@@ -120,7 +121,7 @@ def test_what_is_remembered_is_smoothed() -> None:
 def test_a_plan_that_cannot_be_run_is_refused(wrong: dict[str, object], told: str) -> None:
     with pytest.raises(CosimError, match=told):
         replace(PLAN, **wrong).check()  # type: ignore[arg-type]
-    assert make_days(PLAN.as_json()) == PLAN
+    assert plan_of(DaysPlan, PLAN.as_json()) == PLAN
 
 
 CARS = """<routes>
@@ -158,7 +159,7 @@ def test_an_adviser_of_ones_own_is_followed_and_its_faults_are_told(
     def days(adviser: str) -> DaysRow:
         own = replace(plan, adviser=f"advisers:{adviser}")
         own.check()
-        return run_chain(DaysJob(own, 1.0, 0), Path())
+        return tried(run_chain)(DaysJob(own, 1.0, 0), Path())
 
     stays = days("Stays")
     assert stays.error is None, stays.error

@@ -13,12 +13,15 @@ import pytest
 from automotive_cosim.contracts import EgoEnd, Reroute
 from automotive_cosim.errors import TrafficError
 from automotive_cosim.scenarios import load
-from automotive_cosim.studies.drive import run_drive
-from automotive_cosim.studies.plan import StudyPlan
-from automotive_cosim.studies.rows import NOTHING, DriveRow, Totals
+from automotive_cosim.studies.calls.accounts import Settled
+from automotive_cosim.studies.calls.chance import Fresh, fresh_of, renew
+from automotive_cosim.studies.calls.ledger import keep_ledger, others, run_on, settle
+from automotive_cosim.studies.reroute.drive import run_drive
+from automotive_cosim.studies.reroute.futures import own_choice_of
+from automotive_cosim.studies.reroute.plan import StudyPlan
+from automotive_cosim.studies.reroute.rows import NOTHING, DriveRow, Totals
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.chance import Fresh, Trial
-from automotive_cosim.traffic.fork import Forked, RemoteTraffic
+from automotive_cosim.traffic.fork import Forked, RemoteCopy, RemoteTraffic
 
 from .conftest import EDGES, LORRY_EVERY_S, SLOW_MPS, SPEED_MPS
 
@@ -34,7 +37,7 @@ def driven(small: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> tuple[
     (job,) = replace(small, step_s=STEP_S).jobs()
     scene = job.plan.scene(job.share)
     with closing(Forked(scene, job.seed, allow_unprojected=True, outputs=outputs)) as simulation:
-        simulation.keep_ledger()
+        simulation.call(keep_ledger)
         return run_drive(job, simulation, ()), outputs
 
 
@@ -94,8 +97,8 @@ def test_they_say_the_same_where_cars_stop_and_waver(tmp_path: Path) -> None:
     plan = StudyPlan("grid", trips=("round",), least_delay_s=0.0, per_drive=1)
     job = plan.jobs()[0]
     with closing(Forked(plan.scene(0.6), 3, outputs=tmp_path)) as simulation:
-        simulation.keep_ledger()
-        simulation.run_on(100.0)
+        simulation.call(keep_ledger)
+        simulation.call(run_on, 100.0)
         row = run_drive(job, simulation, ())
     told = futures(row)
     assert any(totals.stops for totals in told)
@@ -140,21 +143,21 @@ def test_branches_without_a_choice_stay_the_same_to_the_last(tmp_path: Path) -> 
     """Everybody's trip, as SUMO writes it to the sixth digit, and the ego's whole way."""
     scenario = load("grid")
     with closing(Forked(scenario, 2, outputs=tmp_path)) as simulation:
-        simulation.keep_ledger()
-        simulation.run_on(60.0)
+        simulation.call(keep_ledger)
+        simulation.call(run_on, 60.0)
         traffic = simulation.depart(EgoPlan(scenario.trip("round"), seed=1))
         traffic.advance(30.0)
-        group, _ = traffic.others()
+        group, _ = traffic.call(others)
         asked = traffic.branch()
         asked.alternatives(60.0)
-        asked.own_choice()
+        own_choice_of(asked)
         watched = traffic.branch()
         futures = [traffic, asked, traffic.branch()]
         for future in futures:
-            future.begin_settling([group], 0.95, 3600.0)
-        outcomes = [future.settled() for future in futures]
+            future.begin(settle, [group], 0.95, 3600.0)
+        outcomes: list[Settled] = [future.ended() for future in futures]
         watched.advance(3600.0)
-        seen, told = watched.state, watched.settle([group], 0.95, 3600.0)
+        seen, told = watched.state, watched.call(settle, [group], 0.95, 3600.0)
         for future in (*futures, watched):
             future.close()
     last = futures[0].state
@@ -180,7 +183,7 @@ def rows(path: Path) -> list[bytes]:
 def test_a_choice_changes_nothing_before_it(small: StudyPlan) -> None:
     (job,) = small.jobs()
     with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
-        simulation.keep_ledger()
+        simulation.call(keep_ledger)
         traffic = simulation.depart(EgoPlan(job.trip, "steady"))
         before = traffic.advance(20.0).states
         with closing(traffic), closing(traffic.branch()) as branch:
@@ -199,8 +202,8 @@ def test_old_news_is_what_was_known_then(small: StudyPlan) -> None:
     scene = job.plan.scene(0.0)
     scene = replace(scene, sumo=replace(scene.sumo, warm_up_s=60.0))
     with closing(Forked(scene, 0, allow_unprojected=True)) as simulation:
-        simulation.keep_ledger()
-        simulation.run_on(120.0)
+        simulation.call(keep_ledger)
+        simulation.call(run_on, 120.0)
         with closing(simulation.depart(EgoPlan(job.trip, "steady"))) as traffic:
             now, old = traffic.alternatives(0.0), traffic.alternatives(900.0)
             assert now == traffic.alternatives()
@@ -213,8 +216,8 @@ def test_old_news_is_what_was_known_then(small: StudyPlan) -> None:
 def test_traffic_that_leaves_nothing_to_chance_has_one_future(small: StudyPlan) -> None:
     (job,) = replace(small, replicates=3).jobs()
     with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
-        simulation.keep_ledger()
-        assert simulation.fresh() is Fresh.SEED_UNSEEN
+        simulation.call(keep_ledger)
+        assert fresh_of(simulation) is Fresh.SEED_UNSEEN
         row = run_drive(job, simulation, ())
     (decision,) = row.decisions
     assert row.fresh is Fresh.SEED_UNSEEN
@@ -230,17 +233,17 @@ def test_a_replicate_is_another_future_and_its_seed_gives_it_again(fresh: Fresh 
     """Both by true seeds, which the shipped SUMO allows, and where it does not."""
     scenario = load("grid")
     with closing(Forked(scenario, 2)) as simulation:
-        simulation.keep_ledger()
-        proven = simulation.fresh()
+        simulation.call(keep_ledger)
+        proven = fresh_of(simulation)
         assert proven is Fresh.SEED
         with closing(simulation.depart(EgoPlan(scenario.trip("round"), seed=1))) as traffic:
-            group, _ = traffic.others()
+            group, _ = traffic.call(others)
 
             def settled(seed: int | None) -> dict[str, float]:
                 with closing(traffic.branch()) as copy:
                     if seed is not None:
-                        copy.renew(fresh or proven, seed)
-                    return copy.settle([group], 0.95, 3600.0).arrivals_s
+                        copy.call(renew, fresh or proven, seed)
+                    return copy.call(settle, [group], 0.95, 3600.0).arrivals_s
 
             same, first, again, other = settled(None), settled(5), settled(5), settled(6)
             assert settled(None) == same
@@ -253,13 +256,13 @@ def test_a_library_without_the_symbols_is_replaced_by_jitter(
 ) -> None:
     (job,) = small.jobs()
     with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
-        simulation.keep_ledger()
-        monkeypatch.setattr(simulation._source, "sampled", refused)
-        assert simulation.fresh() is Fresh.JITTER
+        simulation.call(keep_ledger)
+        monkeypatch.setattr(simulation, "copy", refused)
+        assert fresh_of(simulation) is Fresh.JITTER
         row = run_drive(job, simulation, ())
     assert row.fresh is Fresh.JITTER
     assert row.decisions[0].placebo is not None
 
 
-def refused(seed: int) -> Trial:
+def refused() -> RemoteCopy:
     raise TrafficError("the simulation died: by SIGSEGV")

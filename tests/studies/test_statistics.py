@@ -13,21 +13,31 @@ import pytest
 
 from automotive_cosim.contracts import EgoEnd, Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.studies import compare, policies
-from automotive_cosim.studies.compare import Future
-from automotive_cosim.studies.drive import left_out
-from automotive_cosim.studies.everyone import gini, spread
+from automotive_cosim.studies.calls.accounts import Account, Settled, TrafficSummary
+from automotive_cosim.studies.gridlock import gridlock
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
-from automotive_cosim.studies.page import answer
-from automotive_cosim.studies.plan import StudyPlan, make_study
-from automotive_cosim.studies.points import Diverted, Drawn, Point, compared, shows_signs
-from automotive_cosim.studies.policies import best, chosen, parse_policy
-from automotive_cosim.studies.results import Noise, Study, choices, noise
-from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, Decision, DriveRow, News, OthersTotals, Replicate
-from automotive_cosim.studies.tables import outcomes, parts
-from automotive_cosim.studies.traffic import gridlock
-from automotive_cosim.studies.warnings import warnings
-from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
+from automotive_cosim.studies.plan import plan_of
+from automotive_cosim.studies.reroute import compare, policies
+from automotive_cosim.studies.reroute.compare import Future
+from automotive_cosim.studies.reroute.drive import left_out
+from automotive_cosim.studies.reroute.everyone import gini, spread
+from automotive_cosim.studies.reroute.page import answer
+from automotive_cosim.studies.reroute.plan import StudyPlan
+from automotive_cosim.studies.reroute.points import Diverted, Drawn, Point, compared, shows_signs
+from automotive_cosim.studies.reroute.policies import best, chosen, parse_policy
+from automotive_cosim.studies.reroute.results import Noise, Study, choices, noise
+from automotive_cosim.studies.reroute.rows import (
+    NOBODY,
+    NOTHING,
+    Branch,
+    Decision,
+    DriveRow,
+    News,
+    OthersTotals,
+    Replicate,
+)
+from automotive_cosim.studies.reroute.tables import outcomes, parts
+from automotive_cosim.studies.reroute.warnings import warnings
 from automotive_cosim.traffic.base import EgoPlan
 from tests.scripted.traffic import Scripted, Stretch
 
@@ -493,13 +503,13 @@ def test_a_plan_that_cannot_be_run_is_refused(wrong: Json, word: str) -> None:
 
 def test_plans_come_back_from_their_manifest() -> None:
     plan = StudyPlan("grid", shares=(0.0, 1.0), half_width_s=3.0, policies=("never", "agent:asurada"))
-    assert make_study(plan.as_json()) == plan
+    assert plan_of(StudyPlan, plan.as_json()) == plan
     auto = replace(plan, replicates="auto", together=(0.0, 0.5))
-    assert make_study(auto.as_json()) == auto
+    assert plan_of(StudyPlan, auto.as_json()) == auto
     assert (auto.draws.start, auto.draws.stop) == (4, 14)
     assert [replace(plan, replicates=count).draws.stop for count in (1, 4)] == [0, 3]
-    with pytest.raises(UserError, match="no rerouting study"):
-        make_study({"agents": ["oracle"]})
+    with pytest.raises(UserError, match="no reroute study"):
+        plan_of(StudyPlan, {"agents": ["oracle"]})
 
 
 def test_drives_have_names_of_their_own_and_the_share_draws_nothing() -> None:

@@ -17,34 +17,35 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim.cli.results import report
-from automotive_cosim.cli.study import app
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import LIVE, ROAD, STEPS
+from automotive_cosim.formats.layout import LIVE, ROAD, STEPS, WATCHED
+from automotive_cosim.formats.writing import mark_as_written
 from automotive_cosim.report.files import write_files
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.road import read_record
-from automotive_cosim.run.road_recorder import mark_as_written
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
-from automotive_cosim.studies import batch, intervals
-from automotive_cosim.studies.batch import run_study
-from automotive_cosim.studies.data import futures
-from automotive_cosim.studies.demand import read_demand
-from automotive_cosim.studies.drive import NO_ROOM
-from automotive_cosim.studies.effects import effects
-from automotive_cosim.studies.live import WATCHED, LiveDrive
-from automotive_cosim.studies.page import write_study
-from automotive_cosim.studies.plan import StudyPlan
-from automotive_cosim.studies.points import NOT_CLEARED
-from automotive_cosim.studies.results import load_study, read_study
-from automotive_cosim.studies.rows import NOTHING, DriveRow
-from automotive_cosim.studies.tables import policies as policy_table
-from automotive_cosim.studies.tables import tables
-from automotive_cosim.studies.tracks import TRACKS
-from automotive_cosim.studies.warnings import steps_told
-from automotive_cosim.traffic.chance import Fresh
+from automotive_cosim.studies import intervals
+from automotive_cosim.studies.calls.chance import Fresh
+from automotive_cosim.studies.commands import app
+from automotive_cosim.studies.reroute import batch
+from automotive_cosim.studies.reroute.batch import REROUTE
+from automotive_cosim.studies.reroute.data import futures
+from automotive_cosim.studies.reroute.demand import read_demand
+from automotive_cosim.studies.reroute.drive import NO_ROOM
+from automotive_cosim.studies.reroute.effects import effects
+from automotive_cosim.studies.reroute.live import LiveDrive
+from automotive_cosim.studies.reroute.page import write_study
+from automotive_cosim.studies.reroute.plan import StudyPlan
+from automotive_cosim.studies.reroute.points import NOT_CLEARED
+from automotive_cosim.studies.reroute.results import Study, load_study
+from automotive_cosim.studies.reroute.rows import NOTHING, DriveRow
+from automotive_cosim.studies.reroute.tables import policies as policy_table
+from automotive_cosim.studies.reroute.tables import tables
+from automotive_cosim.studies.reroute.tracks import TRACKS
+from automotive_cosim.studies.reroute.warnings import steps_told
 
 from .conftest import EDGES, MORE_TRIPS, Draw
 
@@ -66,7 +67,7 @@ def steady(folder: Path) -> dict[str, Json]:
 
 def write_tables(folder: Path) -> None:
     """As much of a report as takes no time."""
-    study = read_study(folder)
+    study = Study.read(folder)
     write_files(folder, [*tables(study), *(table for table in effects(study) if table.rows)], ())
 
 
@@ -87,7 +88,7 @@ def plan(two_ways: Draw) -> StudyPlan:
 def folder(plan: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The study, run by one worker."""
     folder = tmp_path_factory.mktemp("study") / "one"
-    end = run_study(plan, folder)
+    end = REROUTE.run(plan, folder)
     assert (end.done, end.errors) == (len(plan.jobs()), 0)
     return folder
 
@@ -99,7 +100,7 @@ def page(folder: Path) -> str:
 
 
 def test_order_and_number_of_workers_do_not_show(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
-    run_study(plan, tmp_path / "two", executor=Processes(2))
+    REROUTE.run(plan, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "two") == steady(folder)
 
 
@@ -109,10 +110,10 @@ def test_replicates_are_rows_that_come_out_equal_wherever_they_ran(two_ways: Dra
     plan = StudyPlan(
         str(two_ways(DAWDLING)), departures_s=(0.0,), seeds=(0, 1), per_drive=1, least_delay_s=0.0, replicates=3
     )
-    run_study(plan, tmp_path / "one")
-    run_study(plan, tmp_path / "two", executor=Processes(2))
+    REROUTE.run(plan, tmp_path / "one")
+    REROUTE.run(plan, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "two") == steady(tmp_path / "one")
-    study = read_study(tmp_path / "one")
+    study = Study.read(tmp_path / "one")
     assert {row.fresh for row in study.rows} == {Fresh.SEED}
     for point in study.decisions:
         seeds = [each.seed for each in point.decision.replicates]
@@ -124,13 +125,13 @@ def test_replicates_are_rows_that_come_out_equal_wherever_they_ran(two_ways: Dra
         study.decisions
     )
     single = tmp_path / "single"
-    run_study(replace(plan, replicates=1), single)
-    for one, many in zip(read_study(single).rows, study.rows, strict=True):
+    REROUTE.run(replace(plan, replicates=1), single)
+    for one, many in zip(Study.read(single).rows, study.rows, strict=True):
         assert one.stay == many.stay, "the first draw is the same drive"
         assert [each.branches for each in one.decisions] == [each.branches for each in many.decisions]
     lines = (tmp_path / "one" / "episodes.jsonl").read_bytes().splitlines(keepends=True)
     (tmp_path / "two" / "episodes.jsonl").write_bytes(lines[0] + lines[1][:60])
-    assert run_study(plan, tmp_path / "two").ran == 1
+    assert REROUTE.run(plan, tmp_path / "two").ran == 1
     assert steady(tmp_path / "two") == steady(tmp_path / "one")
     assert "cross-fitted" in write_study(tmp_path / "one").read_text(encoding="utf-8")
 
@@ -142,7 +143,7 @@ def test_watching_shows_every_drive_and_changes_nothing(plan: StudyPlan, folder:
         def watch(progress: Progress[DriveRow]) -> None:
             mark_as_written(stack.enter_context((watched / LIVE / WATCHED).open("rb")))
 
-        run_study(replace(plan, seeds=(0,)), watched, tell=watch)
+        REROUTE.run(replace(plan, seeds=(0,)), watched, tell=watch)
     assert steady(watched)
     assert steady(watched).items() <= steady(folder).items()
     assert not list((folder / LIVE).glob("*/")), "nobody watched that one"
@@ -168,7 +169,7 @@ def test_a_full_disk_ends_the_watching_and_not_the_study(
 
     monkeypatch.setattr(LiveDrive, "_is_watched", lambda live: live._folder is not None)
     monkeypatch.setattr(LiveDrive, "_begin", full)
-    run_study(replace(plan, seeds=(0,)), tmp_path / "full")
+    REROUTE.run(replace(plan, seeds=(0,)), tmp_path / "full")
     assert steady(tmp_path / "full").items() <= steady(folder).items()
 
 
@@ -179,15 +180,15 @@ def test_what_is_done_is_not_run_again(plan: StudyPlan, folder: Path, tmp_path: 
     lines = (folder / "episodes.jsonl").read_bytes().splitlines(keepends=True)
     (again / "manifest.json").write_bytes((folder / "manifest.json").read_bytes())
     (again / "episodes.jsonl").write_bytes(b"".join(lines[:-3]) + lines[-3][:40])
-    assert run_study(plan, again).ran == 3
+    assert REROUTE.run(plan, again).ran == 3
     assert steady(again) == steady(folder)
-    assert run_study(plan, again).ran == 0
+    assert REROUTE.run(plan, again).ran == 0
     with pytest.raises(UserError, match="started with a different plan"):
-        run_study(replace(plan, compliance=(0.5,)), again)
+        REROUTE.run(replace(plan, compliance=(0.5,)), again)
 
 
 def test_what_has_nothing_to_decide_is_counted_and_kept_out(folder: Path) -> None:
-    study = read_study(folder)
+    study = Study.read(folder)
     assert study.excluded["drive", "start is goal"] == 4
     assert study.excluded["drive", "no congestion met"] == 4
     assert study.excluded["drive", "no alternative"] == 4
@@ -243,7 +244,7 @@ def test_the_report_is_whole(folder: Path, page: str) -> None:
 
 @pytest.mark.usefixtures("page")
 def test_every_future_is_a_row_and_the_package_describes_it(folder: Path) -> None:
-    study = read_study(folder)
+    study = Study.read(folder)
     decisions = [decision for row in study.rows for decision in row.decisions]
     with (folder / "futures.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -310,7 +311,7 @@ def test_compliance_is_swept_at_the_same_decisions(folder: Path, tmp_path: Path)
     assert float(rows[0]["always"]) == pytest.approx(full.gain_time_s.mean(), abs=0.05)
     assert float(rows[2]["always"]) == 0
     assert (swept / "plots" / "compliance.svg").exists()
-    assert policy_table(read_study(swept)) == policy_table(read_study(folder)), "other tables are of the first"
+    assert policy_table(Study.read(swept)) == policy_table(Study.read(folder)), "other tables are of the first"
 
 
 def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> None:
@@ -323,8 +324,8 @@ def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> Non
         placebo_every=0,
         limit_s=300.0,
     )
-    run_study(plan, tmp_path / "jam")
-    study = read_study(tmp_path / "jam")
+    REROUTE.run(plan, tmp_path / "jam")
+    study = Study.read(tmp_path / "jam")
     assert not study.decisions
     assert {reason for _, reason in study.excluded} <= {NOT_CLEARED, NO_ROOM, "gridlock: waiting for long"}
     assert sum(study.excluded.values()) == 1
@@ -334,8 +335,8 @@ def test_each_share_is_traffic_of_its_own(two_ways: Draw, tmp_path: Path) -> Non
     plan = StudyPlan(
         str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1, shares=(0.0, 1.0), placebo_every=0
     )
-    run_study(plan, tmp_path / "shares")
-    study = read_study(tmp_path / "shares")
+    REROUTE.run(plan, tmp_path / "shares")
+    study = Study.read(tmp_path / "shares")
     assert [row.share for row in study.rows] == [0.0, 1.0]
     assert {each.share for each in study.choices} == {0.0, 1.0}
     write_tables(tmp_path / "shares")
@@ -357,8 +358,8 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
         placebo_every=0,
         replicates=2,
     )
-    run_study(plan, tmp_path / "whole")
-    study = read_study(tmp_path / "whole")
+    REROUTE.run(plan, tmp_path / "whole")
+    study = Study.read(tmp_path / "whole")
     row = {row.trip: row for row in study.rows}["across"]
     (decision,) = row.decisions
     always = [each for each in row.whole if (each.policy, each.compliance) == ("always", 1.0)]
@@ -391,8 +392,8 @@ def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None
         least_delay_s=0.0,
         together=(0.0, 1.0),
     )
-    run_study(plan, tmp_path / "many")
-    (row,) = read_study(tmp_path / "many").rows
+    REROUTE.run(plan, tmp_path / "many")
+    (row,) = Study.read(tmp_path / "many").rows
     first, second = row.decisions
     assert not second.together
     branch = first.branches[first.news[0].branch or 0]
@@ -410,8 +411,8 @@ def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None
 def test_a_closure_costs_who_would_have_driven_there(two_ways: Draw, tmp_path: Path) -> None:
     """With the other way closed, the ego that wanted to take it drives as if it had not."""
     plan = StudyPlan(str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1, placebo_every=0, close="back")
-    run_study(plan, tmp_path / "closed")
-    (row,) = read_study(tmp_path / "closed").rows
+    REROUTE.run(plan, tmp_path / "closed")
+    (row,) = Study.read(tmp_path / "closed").rows
     assert not row.error
     (decision,) = row.decisions
     (found,) = decision.closed
@@ -441,8 +442,8 @@ def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways
         emissions=True,
         ego_class="Energy/default",
     )
-    run_study(plan, tmp_path / "fleet")
-    (row,) = read_study(tmp_path / "fleet").rows
+    REROUTE.run(plan, tmp_path / "fleet")
+    (row,) = Study.read(tmp_path / "fleet").rows
     (decision,) = row.decisions
     branch = decision.branches[0]
     assert row.stay is not None
@@ -463,8 +464,8 @@ def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways
 
 def test_an_emission_class_that_sumo_lacks_is_named(two_ways: Draw, tmp_path: Path) -> None:
     plan = StudyPlan(str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1, ego_class="Steam/big")
-    run_study(plan, tmp_path / "steam", retries=0)
-    (row,) = read_study(tmp_path / "steam").rows
+    REROUTE.run(plan, tmp_path / "steam", retries=0)
+    (row,) = Study.read(tmp_path / "steam").rows
     assert "Steam/big" in (row.error or "")
 
 
@@ -478,8 +479,8 @@ def test_seeds_are_added_only_until_enough_is_known(
     plan = StudyPlan(
         str(two_ways()), departures_s=(0.0,), seeds=tuple(range(8)), per_drive=1, placebo_every=0, half_width_s=1.0
     )
-    run_study(plan, tmp_path / "until", executor=Processes(2))
-    assert {row.seed for row in read_study(tmp_path / "until").rows} == set(range(4))
+    REROUTE.run(plan, tmp_path / "until", executor=Processes(2))
+    assert {row.seed for row in Study.read(tmp_path / "until").rows} == set(range(4))
 
 
 AGENTS = """
@@ -526,8 +527,8 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
         replicates=2,
         trajectories=True,
     )
-    run_study(plan, tmp_path / "agent")
-    study = read_study(tmp_path / "agent")
+    REROUTE.run(plan, tmp_path / "agent")
+    study = Study.read(tmp_path / "agent")
     (point,) = study.decisions
     decision = point.decision
     (again,) = decision.replicates
@@ -570,7 +571,7 @@ def test_every_question_has_a_script_that_answers_it(
     scripts = [path for path in scripts if path.stem != "urb"]  # which makes scenarios, and reads no study
     assert [path.stem for path in scripts] == sorted(ANSWERS)
     plan = replace(small, replicates=2, whole_drives=True, trajectories=True, policies=("never", "always"))
-    run_study(plan, tmp_path / "study")
+    REROUTE.run(plan, tmp_path / "study")
     write_study(tmp_path / "study")
     for path in scripts:
         monkeypatch.setattr("sys.argv", [str(path), str(tmp_path / "study")])
@@ -587,8 +588,8 @@ def test_the_reference_agents_get_there_faster(two_ways: Draw, tmp_path: Path) -
     names = ("t3a", "asurada")
     policies = ("never", "always", "best", *(f"agent:{name}" for name in names))
     plan = StudyPlan(str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1, policies=policies)
-    run_study(plan, tmp_path / "agent")
-    study = read_study(tmp_path / "agent")
+    REROUTE.run(plan, tmp_path / "agent")
+    study = Study.read(tmp_path / "agent")
     (point,) = study.decisions
     decision = point.decision
     always = decision.branches[decision.news[0].branch]
@@ -639,7 +640,7 @@ def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
     for row, folder in zip(
         rows, sorted(path for path in (tmp_path / "suite").iterdir() if path.is_dir()), strict=True
     ):
-        study = read_study(folder)
+        study = Study.read(folder)
         (always,) = [each for each in study.choices if each.policy == "always"]
         assert row["Always saves, s"] == f"{always.gain.time_s:+.1f}"
         assert row["Edges"] == str(len(EDGES))
@@ -697,8 +698,8 @@ def test_a_sumo_configuration_is_studied_as_it_is_between_places(two_ways: Draw,
     )
     plan.check()
     before = {path.name: path.read_bytes() for path in configuration.parent.iterdir()}
-    run_study(plan, tmp_path / "s")
-    study = read_study(tmp_path / "s")
+    REROUTE.run(plan, tmp_path / "s")
+    study = Study.read(tmp_path / "s")
     assert [(row.trip, len(row.decisions)) for row in study.rows] == [("chosen", 1)]
     assert not [*steps_told(plan.opened, 1.0)], "the configuration states no step"
     stated = configuration.with_name("stated.sumocfg")

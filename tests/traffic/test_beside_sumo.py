@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from datetime import time
 from pathlib import Path
 from typing import Any
 
@@ -15,15 +16,12 @@ import pytest
 
 from automotive_cosim.contracts import DrivingState
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats.incidents import Breakdown, Closure, EmergencyVehicle, Roadworks
+from automotive_cosim.formats.incidents import Closure, EmergencyVehicle, Roadworks, SchoolZone
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.divert import divert
 from automotive_cosim.traffic.drive import EgoDrive
-from automotive_cosim.traffic.flow import SignalControl, control
-from automotive_cosim.traffic.ledger import Ledger, own_choice
-from automotive_cosim.traffic.sumo import EGO, load_library
+from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.world import World
 from tests.traffic.in_process import InProcess
 
@@ -58,6 +56,8 @@ class Road:
     """Types of nodes."""
     options: tuple[str, ...] = ()
     """Of netconvert."""
+    files: Mapping[str, str] = field(default_factory=dict)
+    """Those that the additional file includes."""
 
     def opened(self, folder: Path, warm_up_s: float = 200.0, rerouting: float = 0.0) -> Scenario:
         """Writes it, and opens it as a scenario."""
@@ -83,6 +83,8 @@ class Road:
         names = {"net-file": "n.net.xml", "route-files": "n.rou.xml", "additional-files": "n.add.xml"}
         inputs = "".join(f'<{name} value="{value}"/>' for name, value in names.items())
         (folder / "n.sumocfg").write_text(f"<configuration>{inputs}</configuration>")
+        for name, text in self.files.items():
+            (folder / name).write_text(f"<additional>{text}</additional>")
         opened = open_scenario(folder / "n.sumocfg", from_place="e1", to_place="e3", gps=False)
         sumo = replace(
             opened.sumo,
@@ -91,7 +93,7 @@ class Road:
             action_step_length_s=1.0,
             background_rerouting=rerouting,
         )
-        return replace(opened, sumo=sumo, as_stated=False)
+        return replace(opened, sumo=sumo)
 
 
 @contextmanager
@@ -164,6 +166,24 @@ def test_the_limit_told_is_what_sumo_lets_a_car_drive_and_no_jam(name: str, tmp_
     assert first.delay_s < 8.0
 
 
+@pytest.mark.parametrize("how", ["a school's hours", "roadworks"])
+def test_traffic_is_not_slow_because_of_a_limit_that_has_ended(how: str, tmp_path: Path) -> None:
+    scenario = Road().opened(tmp_path)
+    limit, hours = 36.0, {"opens": time(7), "closes": time(scenario.start.hour, scenario.start.minute + 3)}
+    with running(scenario) as (_, world, libsumo):
+        if how == "roadworks":
+            world.stage(Roadworks(edge="e2", limit_kmh=limit, to_s=180.0))
+        else:
+            world.stage(SchoolZone(edges=("e2",), limit_kmh=limit, **hours))
+        for _ in range(170):
+            world.step()
+        assert libsumo.lane.getMaxSpeed("e2_0") == 10
+        for _ in range(60):
+            world.step()
+            assert world.congestion.slow_edges() == ()
+        assert libsumo.lane.getMaxSpeed("e2_0") == 25
+
+
 # --- whose speeds count -----------------------------------------------------------------------------------
 
 BESIDE = (
@@ -183,6 +203,16 @@ SPEEDS = {
     "bicycles on their lane": Road(FIRST + BESIDE.format("bicycle") + LAST, OTHERS.format("bicycle") + CARS),
     "buses on their lane": Road(FIRST + BESIDE.format("bus") + LAST, OTHERS.format("bus") + CARS),
     "trams on their lane": Road(FIRST + BESIDE.format("tram") + LAST, OTHERS.format("tram") + CARS),
+    **{
+        f"{kind}s beside cars": Road(
+            LINE.replace('id="e2"', 'id="e2" numLanes="3"'),
+            SLOWLY.format(kind).replace('"4"', '"15"')
+            + '<vTypeDistribution id="mix" vTypes="other"/>'
+            + '<flow id="o" type="mix" end="9999" period="10" departLane="0"><route edges="e2"/></flow>'
+            + CARS,
+        )
+        for kind in ("truck", "trailer", "coach")
+    },
     "bicycles beside cars": Road(
         LINE.replace('id="e2"', 'id="e2" numLanes="3"'),
         SLOWLY.format("bicycle")
@@ -238,23 +268,29 @@ def test_a_car_on_the_other_side_is_still_on_its_own_road(tmp_path: Path) -> Non
 
 # --- what is closed, and what is a signal -----------------------------------------------------------------
 
-CLOSED = (
-    '<rerouter id="r" edges="e1"><interval begin="0" end="9999"><closingReroute id="e2" {}/></interval></rerouter>'
-)
+CLOSED = '<rerouter id="r" edges="e1"><interval begin="0" end="9999"><{}/></interval></rerouter>'
 
 
 @pytest.mark.parametrize(
     ("how", "is_closed"),
     [
-        ("", True),
-        ('disallow="all"', True),
-        ('allow="bus"', True),
-        ('disallow="bus"', False),
-        ('allow="passenger"', False),
+        ('closingReroute id="e2"', True),
+        ('closingReroute id="e2" disallow="all"', True),
+        ('closingReroute id="e2" allow="bus"', True),
+        ('closingReroute id="e2" disallow="bus"', False),
+        ('closingReroute id="e2" allow="passenger"', False),
+        ('closingLaneReroute id="e2_0" disallow="passenger"', True),
+        ('closingLaneReroute id="e2_0" disallow="bus"', False),
     ],
 )
-def test_drawn_trips_begin_and_end_where_cars_may_drive(how: str, is_closed: bool, tmp_path: Path) -> None:
-    road = Road(LINE + QUICK, more=CLOSED.format(how))
+@pytest.mark.parametrize("is_included", [False, True])
+def test_drawn_trips_begin_and_end_where_cars_may_drive(
+    how: str, is_closed: bool, is_included: bool, tmp_path: Path
+) -> None:
+    rerouter = CLOSED.format(how)
+    road = Road(LINE + QUICK, more=rerouter)
+    if is_included:
+        road = replace(road, more='<include href="more.xml"/>', files={"more.xml": rerouter})
     scenario = road.opened(tmp_path)
     drawn = open_scenario(scenario.config, gps=False).ego.trips
     ends = {edge for trip in drawn for edge in (trip.from_edge, trip.to_edge)}
@@ -262,23 +298,24 @@ def test_drawn_trips_begin_and_end_where_cars_may_drive(how: str, is_closed: boo
     with running(scenario) as (_, world, libsumo):
         ways = {libsumo.vehicle.getRoute(each)[1] for each in libsumo.vehicle.getIDList()}
         assert ("e2" not in ways) is is_closed
-        if how and is_closed:
+        if "allow" in how and is_closed:
             on_it = open_scenario(scenario.config, gps=False, from_place="e2", to_place="e3")
             with pytest.raises(ScenarioError, match="no route for a car leads from 'e2'"):
                 depart(world, on_it)
 
 
-def test_a_rail_crossing_is_no_signal_to_control(tmp_path: Path) -> None:
-    rails = '<edge id="r1" from="north" to="c" allow="rail"/><edge id="r2" from="c" to="south" allow="rail"/>'
-    flow = '<flow id="t" type="train" end="9999" period="90"><route edges="r1 r2"/></flow>'
-    train = f'<vType id="train" vClass="rail"/>{flow}'
-    scenario = Road(LINE + rails, train + CARS, nodes={"c": 'type="rail_crossing"'}).opened(tmp_path)
+RAILS = '<edge id="r1" from="north" to="c" allow="rail"/><edge id="r2" from="c" to="south" allow="rail"/>'
+TRAINS = (
+    '<vType id="train" vClass="rail"/>'
+    '<flow id="t" type="train" end="9999" period="90"><route edges="r1 r2"/></flow>'
+)
+
+
+def test_a_rail_crossing_is_no_signal(tmp_path: Path) -> None:
+    scenario = Road(LINE + RAILS, TRAINS + CARS, nodes={"c": 'type="rail_crossing"'}).opened(tmp_path)
     with running(scenario) as (_, world, libsumo):
         assert libsumo.trafficlight.getIDList() == ("c",)
         assert not any(way.has_signal for ways in world.network.crossings.values() for way in ways.values())
-        before = libsumo.trafficlight.getProgram("c")
-        assert control(load_library(), SignalControl(control="static")) == 0
-        assert libsumo.trafficlight.getProgram("c") == before
 
 
 # --- what is asked of SUMO --------------------------------------------------------------------------------
@@ -308,31 +345,6 @@ def test_a_detour_is_the_quickest_way_at_the_speeds_driven(tmp_path: Path) -> No
         for _ in range(60):
             world.step()
         assert ways(libsumo) - {"e2"} == {"s1"}
-
-
-def test_the_choice_of_sumos_device_sees_the_traffic_though_nobody_has_one(tmp_path: Path) -> None:
-    scenario = Road(FIRST + LAST + QUICK + SLOW, CRAWLERS).opened(tmp_path, warm_up_s=300.0)
-    with running(scenario) as (_, world, libsumo):
-        world.prepare_copies()
-        depart(world, scenario)
-        assert libsumo.vehicle.getRoute(EGO)[1] == "q1"
-        libsumo.vehicle.rerouteTraveltime(EGO, False)
-        assert libsumo.vehicle.getRoute(EGO)[1] == "q1", "of SUMO"
-        assert own_choice(load_library())[1] == "s1"
-
-
-def test_cars_that_are_told_to_take_another_way_keep_it(tmp_path: Path) -> None:
-    """SUMO's device turns back at its next period who was given a slower way."""
-    road = Road(FIRST.replace("25", "10") + LAST + QUICK + SLOW, CARS.replace("e2", "q1 q2"))
-    with running(road.opened(tmp_path, rerouting=1.0)) as (_, world, libsumo):
-        other = max(libsumo.vehicle.getIDList(), key=libsumo.vehicle.getDeparture)
-        libsumo.vehicle.setRoute(other, ("e1", "s1", "s2", "e3"))
-        took, could = divert(load_library(), ("e1", "q1", "q2", "e3"), ("e1", "s1", "s2", "e3"), 1.0, 0)
-        assert len(took) == could > 1
-        for _ in range(75):
-            world.step()
-        assert libsumo.vehicle.getRoute(other)[1] == "q1", "of SUMO"
-        assert {libsumo.vehicle.getRoute(each)[1] for each in took if each in libsumo.vehicle.getIDList()} == {"s1"}
 
 
 @pytest.mark.parametrize("blue_light", [False, True])
@@ -406,37 +418,3 @@ def test_no_sign_is_put_up_where_sumo_keeps_another_limit_for_cars(tmp_path: Pat
         assert libsumo.vehicle.getAllowedSpeed(car) == 12, "of SUMO"
         with pytest.raises(ScenarioError, match="'e2' has a limit for cars in its type"):
             world.stage(Roadworks(edge="e2", limit_kmh=36))
-
-
-# --- what studies count -----------------------------------------------------------------------------------
-
-
-def test_a_queue_is_as_long_as_those_who_wait(tmp_path: Path) -> None:
-    """SUMO's queue output counts from the end of the lane: over the free road before a breakdown too."""
-    scenario = Road().opened(tmp_path, warm_up_s=100.0)
-    with running(scenario) as (_, world, libsumo):
-        world.stage(Breakdown(edge="e2", position_m=100.0))
-        for _ in range(120):
-            world.step()
-        found = Ledger(load_library(), 1.0).queues_m()
-        waiting = [each for each in libsumo.vehicle.getIDList() if libsumo.vehicle.getWaitingTime(each) > 0]
-        assert len(waiting) > 2
-        assert found == {"e2_0": 7.5 * len(waiting)}
-
-
-def test_who_collides_has_not_arrived(tmp_path: Path) -> None:
-    """SUMO lists both among those that have arrived."""
-    with running(Road().opened(tmp_path)) as (_, world, libsumo):
-        ledger = Ledger(load_library(), 1.0)
-        front, rear, *_ = sorted(libsumo.vehicle.getIDList(), key=libsumo.vehicle.getDistance, reverse=True)[1:]
-        libsumo.vehicle.setSpeed(front, 0)
-        libsumo.vehicle.setSpeedMode(rear, 0)
-        libsumo.vehicle.setSpeed(rear, 25)
-        arrived: set[str] = set()
-        for _ in range(80):
-            world.step()
-            ledger.note()
-            arrived |= set(libsumo.simulation.getArrivedIDList())
-        assert {front, rear} <= arrived, "of SUMO"
-        assert not {front, rear} & ledger.arrivals_s.keys()
-        assert ledger.summary().collided == 2

@@ -20,6 +20,7 @@ from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.traffic import remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
+from tests.traffic.calls import run_on, seen, watch
 from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
@@ -103,14 +104,16 @@ def test_a_warm_process_that_dies_as_it_is_copied_costs_a_reload(grid: Scenario,
 def test_what_was_asked_of_a_warm_process_is_asked_of_the_next(grid: Scenario, hurried: EgoPlan) -> None:
     short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
     with closing(Forked(short, seed=1)) as simulation:
-        simulation.keep_ledger()
-        simulation.run_on(20.0)
+        simulation.call(watch)
+        assert simulation.call(run_on, steps=20) == 20
         with closing(simulation.depart(hurried)) as traffic:
-            expected = traffic.state, traffic.others()
+            expected = traffic.state, traffic.call(seen)
         os.kill(simulation._source._warm.pid, signal.SIGKILL)
         assert gone([simulation._source._warm.pid])
         with closing(simulation.depart(hurried)) as traffic:
-            assert (traffic.state, traffic.others()) == expected
+            assert (traffic.state, traffic.call(seen)) == expected
+            traffic.begin(run_on, steps=200)
+            assert traffic.ended() == expected[1] + 200
 
 
 def test_a_hung_drive_is_ended_in_time(grid: Scenario, hurried: EgoPlan) -> None:

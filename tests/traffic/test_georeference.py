@@ -15,7 +15,7 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import load, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.georeference import GeoReference, doubt, middle, moved
-from automotive_cosim.traffic.network import drives_on_left, read_network, root_of
+from automotive_cosim.traffic.network import drives_on_left, read_network
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.sumo import load_library
 from automotive_cosim.traffic.world import World
@@ -159,6 +159,6 @@ def test_what_is_no_xml_is_one_line(tmp_path: Path) -> None:
     ):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(ScenarioError, match="is not XML"):
-            root_of(tmp_path / name)
+            drives_on_left(tmp_path / name)
     with pytest.raises(ScenarioError, match="is missing"):
-        root_of(tmp_path / "nothing.xml")
+        drives_on_left(tmp_path / "nothing.xml")

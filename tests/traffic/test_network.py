@@ -20,7 +20,7 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, Congestion, Route
 from automotive_cosim.traffic.network import Network, Shape, read_network
 from automotive_cosim.traffic.router import Router
-from automotive_cosim.traffic.sumo import LibSumo
+from automotive_cosim.traffic.sumo import THE_LIMIT, LibSumo
 from automotive_cosim.traffic.ways import way_through
 from tests.traffic.in_process import InProcess
 
@@ -190,7 +190,7 @@ SAMPLES = round(6 * MEMORY_S / SAMPLE_PERIOD_S)
 
 def jammed(network: Network, *edges: str, speed_mps: float = 1.0, vehicles: int = 20) -> Congestion:
     lanes = [network.edges[edge].lane_ids[-1] for edge in edges]
-    congestion = Congestion(network, lambda: [(lane, speed_mps) for lane in lanes] * vehicles)
+    congestion = Congestion(network, lambda: [(lane, speed_mps, THE_LIMIT) for lane in lanes] * vehicles)
     for _ in range(SAMPLES):
         congestion.sample()
     return congestion
@@ -209,7 +209,7 @@ def test_a_red_light_is_no_jam(town: Network) -> None:
     """Half a cycle of standing, half a cycle of free flow."""
     phase = iter([0.0] * 4 + [12.0] * 4 for _ in range(20))
     speeds = [speed for cycle in phase for speed in cycle]
-    congestion = Congestion(town, lambda: [("c3c4_0", speeds[0])] * 5)
+    congestion = Congestion(town, lambda: [("c3c4_0", speeds[0], THE_LIMIT)] * 5)
     seen = []
     while speeds:
         congestion.sample()
@@ -219,7 +219,7 @@ def test_a_red_light_is_no_jam(town: Network) -> None:
 
 
 def test_a_jam_clears_when_its_vehicles_have_gone(town: Network) -> None:
-    rows = [("c3c4_0", 0.5)] * 20
+    rows = [("c3c4_0", 0.5, THE_LIMIT)] * 20
     congestion = Congestion(town, lambda: rows)
     for _ in range(SAMPLES):
         congestion.sample()
@@ -251,7 +251,7 @@ class NoRouter:
 
 def test_a_queue_to_turn_left_does_not_delay_who_drives_on(town: Network) -> None:
     def eta_s(route: tuple[str, str], *, left_mps: float) -> float:
-        congestion = Congestion(town, lambda: [("c0c1_0", 12.0), ("c0c1_1", left_mps)] * 4)
+        congestion = Congestion(town, lambda: [("c0c1_0", 12.0, THE_LIMIT), ("c0c1_1", left_mps, THE_LIMIT)] * 4)
         congestion.sample()
         (option,) = Router(cast(LibSumo, NoRouter()), town, congestion, "ego").alternatives(route, 1, 0.0)
         return option.eta_s

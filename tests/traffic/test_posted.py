@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
@@ -17,7 +18,16 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.posted import in_force, is_open, sign_mps, timed_access, timed_limits
+from automotive_cosim.traffic.posted import (
+    in_force,
+    is_open,
+    is_understood,
+    names_holidays,
+    read_hours,
+    sign_mps,
+    timed_access,
+    timed_limits,
+)
 from tests.laws import over
 
 Edit = Callable[[Path], None]
@@ -147,7 +157,7 @@ CLOCK = (
     ("week 1-53/2", "2026-01-12T12:00", "2026-01-05T12:00"),
     # parts of the year in which it does not hold
     ("Mo-Fr 08:00-16:00; Jul-Aug off", "2026-06-30T09:00", "2026-07-01T09:00 2026-08-31T09:00"),
-    ("22:00-06:00; Dec 24-Jan 02 off", "2026-12-24T05:00 2027-01-03T22:00", "2026-12-24T22:00 2027-01-03T05:00"),
+    ("22:00-06:00; Dec 24-Jan 02 off", "2026-12-23T23:00 2027-01-03T05:00", "2026-12-24T05:00 2026-12-24T22:00"),
     # holidays have no calendar
     ("Sa,Su,PH 08:00-20:00", "2026-12-26T09:00", "2026-12-25T09:00"),
 )
@@ -358,3 +368,20 @@ def test_roads_and_turns_are_closed_at_the_hours_of_the_drive(shut: Forked, grid
     assert driven[9] == ["cwc0", "c0c1", "c1c2", "c2c3", "c3c4", "c4ce"]
     assert "c1c2" not in driven[8]
     assert ("c2c3", "c3c4") not in pairwise(driven[7])
+
+
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "scenarios.md"
+BESIDE = re.findall(
+    r"^\| `([^`]+)` \| (\d{4}-[\d-]+ [\d:]+) \| (\w+) \| (\w+) \| (\w+) \|$", PAGE.read_text("utf-8"), re.MULTILINE
+)
+"""Conditions beside two libraries of opening hours: an instant, what each says of it, and the page's word."""
+
+
+@over(BESIDE)
+def test_hours_are_as_other_libraries_read_them_or_listed(
+    condition: str, at: str, one: str, other: str, here: str
+) -> None:
+    assert is_understood(condition) is (here != "listed")
+    if here != "listed":
+        assert any(hours.holds(datetime.fromisoformat(at)) for hours in read_hours(condition)) is (here == "yes")
+        assert here in (one, other) or names_holidays(condition), "a holiday is listed anyway"

@@ -13,7 +13,7 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import ScenarioError, UserError
-from automotive_cosim.formats import files
+from automotive_cosim.formats import bounds, files
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.traffic import sumo_programs, vocabulary
 from automotive_cosim.traffic.base import EgoPlan
@@ -370,7 +370,7 @@ def test_shipped_scenarios_run_as_they_are(name: str, tmp_path: Path) -> None:
 def test_an_archive_that_unpacks_to_far_more_is_refused(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(files, "FREELY_UNPACKED_BYTES", 2**20)
+    monkeypatch.setattr(bounds, "FREELY_UNPACKED_BYTES", 2**20)
     config = _written(tmp_path)
     config.with_name(name).write_bytes(gzip.compress(b"<net>" + b" " * 2**22))
     with pytest.raises(UserError, match="unpacks to over 1 MB; if you trust it, unpack it yourself"):

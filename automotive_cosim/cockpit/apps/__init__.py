@@ -1,1 +1,1 @@
-"""The apps of the cockpit, a folder each."""
+"""The apps of the cockpit: a file each, the large ones a folder."""

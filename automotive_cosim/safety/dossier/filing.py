@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import shutil
 from dataclasses import asdict
 from importlib.resources import files
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.writing import beneath, copy, drafted, make_folder, remove, write_whole
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import cannot_write
@@ -40,21 +40,26 @@ def write_dossier(folder: Path, agent: str = "") -> tuple[Path, Path | None]:
     subject = read_subject(folder, agent)
     made = dossier(subject)
     target = folder / FOLDER
-    data = target / DATA
     try:
-        shutil.rmtree(data, ignore_errors=True)
-        data.mkdir(parents=True)
-        write_whole(data / CONTENT, json.dumps(content(made), indent=1, ensure_ascii=False) + "\n")
-        for section in made.sections:
-            for table in section.tables:
-                write_whole(data / f"{table.name}.csv", table.csv())
-        lines = (json.dumps(as_json(row), ensure_ascii=False) for row in subject.rows)
-        write_whole(data / "trials.jsonl", "".join(f"{line}\n" for line in lines))
-        if subject.findings is not None and (folder / PLANS).is_dir():
-            shutil.copytree(folder / PLANS, data / PLANS)
-        titles = {section.name: section.title for section in made.sections}
-        write_whole(target / PAGE, render("safety/dossier/dossier.html", made=made, titles=titles))
-        return target / PAGE, _pdf(data, target / PDF)
+        with drafted(make_folder(folder, FOLDER) / PAGE) as page:
+            remove(target / DATA)
+            data = make_folder(target, DATA)
+            write_whole(data / CONTENT, json.dumps(content(made), indent=1, ensure_ascii=False) + "\n")
+            for section in made.sections:
+                for table in section.tables:
+                    write_whole(data / f"{table.name}.csv", table.csv())
+            lines = (json.dumps(as_json(row), ensure_ascii=False) for row in subject.rows)
+            write_whole(data / "trials.jsonl", "".join(f"{line}\n" for line in lines))
+            if subject.findings is not None:
+                for plan in sorted((folder / PLANS).glob("*.toml")):
+                    copy(
+                        beneath(folder, f"{PLANS}/{plan.name}"),
+                        make_folder(data, PLANS) / plan.name,
+                        bounds.TEXT_BYTES,
+                    )
+            titles = {section.name: section.title for section in made.sections}
+            page.write(render("safety/dossier/dossier.html", made=made, titles=titles).encode())
+            return target / PAGE, _pdf(data, target / PDF)
     except OSError as error:
         raise cannot_write(target, error) from error
 
@@ -76,8 +81,8 @@ def _pdf(data: Path, target: Path) -> Path | None:
     except ImportError:
         return None
     source = data / TEMPLATE
-    source.write_bytes((files("automotive_cosim.safety.dossier") / TEMPLATE).read_bytes())
+    write_whole(source, (files("automotive_cosim.safety.dossier") / TEMPLATE).read_bytes())
     fonts = [str(files(package)) for package in FONTS]
-    typst.compile(str(source), output=str(target), root=str(data), font_paths=fonts, ignore_system_fonts=True)
-    source.unlink()
+    write_whole(target, typst.compile(str(source), root=str(data), font_paths=fonts, ignore_system_fonts=True))
+    remove(source)
     return target

@@ -6,6 +6,7 @@ import hashlib
 from pathlib import Path
 
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.dossier.subject import Section, Subject, fact_table
 from automotive_cosim.safety.page import FINDINGS
@@ -14,16 +15,12 @@ from automotive_cosim.safety.page import FINDINGS
 def hashes(folder: Path) -> list[tuple[str, str]]:
     """SHA-256 of the files of a run, and one for all traces together."""
     names = "manifest.json", "episodes.jsonl", "search.json", FINDINGS
-    found = [(name, _sha256(folder / name)) for name in names if (folder / name).is_file()]
+    found = [(name, file_sha256(folder / name)) for name in names if (folder / name).is_file()]
     traces = sorted((folder / "traces").glob("*"))
     if traces:
-        listed = "".join(f"{_sha256(path)}  {path.name}\n" for path in traces)
+        listed = "".join(f"{file_sha256(path)}  {path.name}\n" for path in traces)
         found.append((f"traces/ ({counted(len(traces), 'file')})", hashlib.sha256(listed.encode()).hexdigest()))
     return found
-
-
-def _sha256(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def provenance(subject: Subject) -> Section:

@@ -24,6 +24,7 @@ const PAGES = [
   [/^\/decision\/([0-9a-f]{12})\/([^/]+)$/, decisionPage],
   [/^\/compare\/([0-9a-f]{12})\/([0-9a-f]{12})$/, comparePage],
   [/^\/beside\/([0-9a-f]{12})\/([^/]+)\/([0-9a-f]{12})\/([^/]+)$/, besidePage],
+  [/^\/beside\/([0-9a-f]{12})\/([0-9a-f]{12})$/, (query, one, other) => besidePage(query, one, null, other, null)],
 ];
 
 let leave = null;

@@ -69,9 +69,9 @@ export async function comparePage(query, first, second) {
   };
 }
 
-// Two episodes on one clock and one road: the second as the dashed outline.
+// Two episodes on one clock and one road: the second as the dashed outline. A run without an evaluation has no episode.
 export async function besidePage(query, ...names) {
-  const bases = [0, 2].map((at) => `/api/runs/${names[at]}/episodes/${encodeURIComponent(names[at + 1])}`);
+  const bases = [0, 2].map((at) => `/api/runs/${names[at]}` + (names[at + 1] === null ? "" : `/episodes/${encodeURIComponent(names[at + 1])}`));
   const runs = await Promise.all(bases.map((base) => ask(base)));
   const steps = await Promise.all(bases.map(async (base) => (await ask(`${base}/steps?skip=0`)).steps));
   const road = new RoadRecord();
@@ -91,7 +91,7 @@ export async function besidePage(query, ...names) {
     clock.textContent = seconds(at);
     view.draw(at);
     for (const each of columns) each.show(at);
-    history.replaceState(null, "", `#/beside/${names.map(encodeURIComponent).join("/")}?at=${Math.round(at * 10) / 10}`);
+    history.replaceState(null, "", `#/beside/${names.filter((name) => name !== null).map(encodeURIComponent).join("/")}?at=${Math.round(at * 10) / 10}`);
   }
   slider.addEventListener("input", () => jump(Number(slider.value)));
   const instants = [...new Set(steps.flat().map((each) => each.at_s))].sort((a, b) => a - b);
@@ -115,7 +115,7 @@ function side(run, steps, base, jump) {
   const said = h("p", { class: "muted" });
   const parts = Object.entries(run.verdict?.parts ?? {}).filter(([, part]) => !part.ok).map(([name, part]) => `${run.parts[name] ?? plain(name)}: ${part.why}`);
   return {
-    element: h("section", {}, h("h2", {}, [run.agent, run.model !== "none" && run.model].filter(Boolean).join(" · "), " ", outcome(run)),
+    element: h("section", {}, h("h2", {}, [run.agent, run.model !== "none" && run.model, ...(run.conditions ?? [])].filter(Boolean).join(" · "), " ", outcome(run)),
       h("div", { class: "card stage-one" }, h("div", { class: "frame" }, screen, empty)), said, h("div", { class: "card" }, list),
       parts.length ? h("p", { class: "muted" }, parts.join("; ")) : null),
     show(at) {

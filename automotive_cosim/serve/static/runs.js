@@ -9,7 +9,7 @@ export async function runsPage() {
   const note = h("p", { class: "muted" });
   const fill = async () => {
     const { records } = await ask("/api/runs");
-    list.replaceChildren(...records.filter((record) => record.kind !== "other").map(line));
+    list.replaceChildren(...records.filter((record) => record.kind !== "other").map((record) => line(record, records)));
     note.textContent = records.length ? "" : "Nothing recorded yet. `automotive-cosim run` records an episode.";
   };
   await fill();
@@ -19,7 +19,7 @@ export async function runsPage() {
 
 const WHOLE = { evaluation: ["results", "Evaluation", "episode"], drives: ["results", "Evaluation of drives", "drive"], study: ["decisions", "Study", "drive"] };
 
-function line(record) {
+function line(record, records) {
   if (record.kind === "unreadable") {
     return h("li", { class: "card" }, h("div", {}, h("b", {}, record.name), h("p", { class: "muted" }, record.error)),
       h("span", { class: "pill bad" }, "Unreadable"));
@@ -36,7 +36,8 @@ function line(record) {
   }
   const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && record.model, record.seed !== null && `seed ${record.seed}`, ...(record.conditions ?? []), when(record.started)];
   return h("li", { class: "card" },
-    h("div", {}, h("a", { href: `#/run/${record.id}` }, record.task),
+    h("div", {}, h("a", { href: `#/run/${record.id}` }, record.task), " ",
+      records.some((each) => each.id === record.beside) && h("a", { class: "pill quiet", href: `#/beside/${record.id}/${record.beside}` }, "Beside the same without its place"),
       record.goal && h("p", {}, `“${record.goal}”`),
       h("p", { class: "muted" }, about.filter(Boolean).join(" · "))),
     record.kind === "drive" && !record.running && record.value !== null ? h("span", { class: "pill quiet" }, `Score ${Math.round(record.value)}`) : outcome(record));

@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
-from automotive_cosim.errors import CosimError
-from automotive_cosim.run.batch import Progress, run_jobs
-from automotive_cosim.run.executor import Executor, Runner
-from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.batch import BatchKind
+from automotive_cosim.run.executor import alone
 from automotive_cosim.run.stage import doing, warming_up
-from automotive_cosim.run.store import opened
+from automotive_cosim.studies.calls.flow import FlowSummary, flow, take
+from automotive_cosim.studies.calls.ledger import keep_ledger
 from automotive_cosim.studies.congestion.outputs import (
     EDGES,
     EdgeFlow,
@@ -33,51 +33,14 @@ from automotive_cosim.studies.congestion.plan import (
     measure_in,
 )
 from automotive_cosim.studies.congestion.rows import CongestionRow, Emitted, FlowCell, FlowState, MeasureOutcome
-from automotive_cosim.studies.traffic import gridlock
-from automotive_cosim.traffic.flow import FlowSummary
-from automotive_cosim.traffic.fork import Forked, RemoteFlow
+from automotive_cosim.studies.gridlock import gridlock
+from automotive_cosim.traffic.fork import Forked, RemoteCopy
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import read_configuration
 
 
-def run_congestion(
-    plan: CongestionPlan,
-    folder: Path,
-    *,
-    executor: Executor = Processes(),  # noqa: B008, frozen
-    retries: int = 1,
-    tell: Callable[[Progress[CongestionRow]], None] = lambda progress: None,
-) -> Progress[CongestionRow]:
-    """Runs the remaining seeds of a study; arguments and errors are those of ``studies.batch.run_study``."""
-    plan.check()
-    with opened(folder, plan.as_json(), CongestionRow, parts=(EDGES,)) as store:
-        return run_jobs(plan.jobs(), store, seeds, failed, executor=executor, retries=retries, tell=tell)
-
-
-@contextmanager
-def seeds() -> Iterator[Runner[CongestionJob, CongestionRow]]:
-    """Makes the runner of the seeds in a worker."""
-    yield run
-
-
-def failed(job: CongestionJob, kind: str, why: str) -> CongestionRow:
-    """The row of a seed that ended in an infrastructure error."""
-    return replace(_planned(job), error=why, error_kind=kind)
-
-
-def run(job: CongestionJob, folder: Path) -> CongestionRow:
-    """Runs a seed; an error becomes a row too. The flows on every edge are written into the study's folder."""
-    try:
-        return _driven(job, folder)
-    except CosimError as error:
-        return failed(job, type(error).__name__, str(error))
-
-
-def _planned(job: CongestionJob) -> CongestionRow:
-    return CongestionRow(id=job.id, scenario=job.plan.scenario, seed=job.seed)
-
-
-def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
+def run_seed(job: CongestionJob, folder: Path) -> CongestionRow:
+    """Runs a seed; the flows on every edge are written into the study's folder."""
     plan = job.plan
     scenario = plan.scene()
     configuration = read_configuration(scenario.config)
@@ -91,17 +54,17 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
             scenario, job.seed, warming_up, allow_unprojected=True, outputs=Path(scratch), flow_s=INTERVAL_S
         )
         stack.enter_context(closing(warm))
-        warm.keep_ledger(consumptions=plan.emissions)
-        running: list[RemoteFlow] = []
+        warm.call(keep_ledger, consumptions=plan.emissions)
+        running: list[RemoteCopy] = []
         for name in names:
             copy = stack.enter_context(closing(warm.copy()))
             if name:
-                copy.apply(measure_in(name, "--measure"), job.seed)
-            copy.begin(plan.duration_s, INTERVAL_S)
+                copy.call(take, measure_in(name, "--measure"), job.seed)
+            copy.begin(flow, plan.duration_s, INTERVAL_S)
             running.append(copy)
         tell = _teller()
         for name, copy in zip(names, running, strict=True):
-            summaries = copy.ended(tell)
+            summaries: tuple[FlowSummary, ...] = copy.ended(tell)
             copy.close()
             assert copy.outputs is not None
             flows = list(read_flows(copy.outputs, begin_s, [each.slowed for each in summaries[1:]]))
@@ -109,7 +72,12 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
             found = cells(flows, [each.queues for each in summaries[1:]], of)
             outcomes.append(_outcome(name, plan, found, summaries))
     write_edges(folder / EDGES, job.id, edges)
-    return replace(_planned(job), outcomes=tuple(outcomes))
+    return replace(job.planned(), outcomes=tuple(outcomes))
+
+
+CONGESTION: BatchKind[CongestionPlan, CongestionJob, CongestionRow] = BatchKind(
+    CongestionRow, partial(alone, run_seed), parts=(EDGES,)
+)
 
 
 def _teller() -> Callable[[float, float], None]:

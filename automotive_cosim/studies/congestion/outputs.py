@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import gzip
 import xml.etree.ElementTree as ET
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from automotive_cosim.formats.csvs import write_packed_csv
+from automotive_cosim.formats.csvs import read_packed_csv, write_packed_csv
+from automotive_cosim.studies.calls.accounts import QUEUE_PERIOD_S
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
 from automotive_cosim.studies.congestion.rows import EdgeRow, FlowCell, FlowSums
-from automotive_cosim.traffic.accounts import QUEUE_PERIOD_S
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.options import EDGE_FLOWS
 
@@ -127,14 +125,12 @@ def write_edges(folder: Path, job: str, measured: Sequence[Sequence[EdgeFlow]]) 
 
 def read_edges(path: Path) -> Iterator[EdgeRow]:
     """What ``write_edges`` wrote; nothing if the file is not there."""
-    if path.is_file():
-        with gzip.open(path, "rt", encoding="utf-8", newline="") as file:
-            for row in csv.DictReader(file):
-                yield EdgeRow(
-                    measure=int(row["measure"]),
-                    edge=row["edge"],
-                    from_s=float(row["from_s"]),
-                    time_s=float(row["time_s"]),
-                    lost_s=float(row["lost_s"]),
-                    distance_m=float(row["distance_m"]),
-                )
+    for row in read_packed_csv(path):
+        yield EdgeRow(
+            measure=int(row["measure"]),
+            edge=row["edge"],
+            from_s=float(row["from_s"]),
+            time_s=float(row["time_s"]),
+            lost_s=float(row["lost_s"]),
+            distance_m=float(row["distance_m"]),
+        )

@@ -16,38 +16,38 @@ from automotive_cosim.studies.congestion.results import (
     cost,
     delay_h,
     indices,
-    read_congestion,
     strongest,
 )
 from automotive_cosim.studies.congestion.rows import FlowState
 from automotive_cosim.studies.congestion.tables import mean, tables
 from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
+from automotive_cosim.studies.reroute.tables import told
+from automotive_cosim.studies.reroute.warnings import missing_told, steps_told
 from automotive_cosim.studies.shown import ShownStudy, write_shown
-from automotive_cosim.studies.tables import told
-from automotive_cosim.studies.warnings import missing_told, steps_told
 
 LEAST_DEPARTING = 0.1
 """Below this share of the mean rate, hardly anybody departs any more."""
 
 
 def write_congestion(folder: Path) -> Path:
-    """Writes all of a study's pages, tables and plots into its folder; returns ``report.html``.
+    """Writes the report of a study into its folder; returns ``report.html``.
 
     Raises:
         UserError: the folder is not a congestion study's, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
-    study = read_congestion(folder)
-    plan = study.plan
+    study = CongestionStudy.read(folder)
+    return write_shown(study, shown(study))
+
+
+def shown(study: CongestionStudy) -> ShownStudy:
+    """What the report shows."""
     about = (
-        f"{counted(len(study.rows), 'seed')}, {plan.minutes:g} minutes each; every measure begins in a copy of "
-        "the same traffic"
+        f"{counted(len(study.rows), 'seed')}, {study.plan.minutes:g} minutes each; every measure begins in a copy "
+        "of the same traffic"
     )
-    shown = ShownStudy("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
-    return write_shown(
-        folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.seeds) - len(study.rows)
-    )
+    return ShownStudy("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
 
 
 def answer(study: CongestionStudy) -> str:

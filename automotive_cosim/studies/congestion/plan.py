@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
-from typing import Any
+from dataclasses import dataclass, replace
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.incidents import AnyIncident, EgoIncident, RushHour
 from automotive_cosim.run.executor import LoneJob
-from automotive_cosim.scenarios import Scenario, Trip, open_scenario
+from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.wording import KINDS, read_line
-from automotive_cosim.studies.plan import check_edges, checked_plan, driven_at, plan_of
+from automotive_cosim.studies.calls.flow import Advice, SignalControl
+from automotive_cosim.studies.congestion.rows import CongestionRow
+from automotive_cosim.studies.plan import check_edges, check_values, driven_at, opened
 from automotive_cosim.studies.settings import CongestionSettings
-from automotive_cosim.traffic.flow import Advice, SignalControl
 
 INTERVAL_S, EPOCH_S = 60.0, 300.0
 """Length of the intervals of the flow on every edge, and of those over which travel times vary (five minutes, as in
@@ -34,8 +32,7 @@ class CongestionPlan(CongestionSettings):
         Raises:
             UserError: one does not exist or is out of range.
         """
-        checked_plan(type(self), asdict(self))
-        self.check_lists()
+        check_values(self)
         if self.minutes % (EPOCH_S / 60):
             raise UserError(f"--minutes is {self.minutes:g}; give a multiple of {EPOCH_S / 60:g}")
         if self.duration_s % (len(self.demand) * EPOCH_S):
@@ -64,7 +61,7 @@ class CongestionPlan(CongestionSettings):
         Raises:
             ScenarioError: it cannot be read.
         """
-        return _opened(self.scenario)
+        return opened(self.scenario)
 
     def scene(self) -> Scenario:
         """The scenario as it is driven, without a measure.
@@ -135,6 +132,10 @@ class CongestionJob(LoneJob):
         """Limit of its wall time: a city runs slower than real time."""
         return 3_600.0 + 10 * self.plan.duration_s * (1 + len(self.plan.measures))
 
+    def planned(self) -> CongestionRow:
+        """Its row before it runs."""
+        return CongestionRow(id=self.id, scenario=self.plan.scenario, seed=self.seed)
+
 
 def measure_in(text: str, place: str) -> Measure:
     """The measure that a line describes, as ``closure edge=c2c3``, ``advice share=0.5`` or
@@ -145,17 +146,3 @@ def measure_in(text: str, place: str) -> Measure:
     """
     found: Measure = read_line(text, MEASURES if place == "--measure" else KINDS, place)
     return found
-
-
-@lru_cache(maxsize=4)
-def _opened(name: str) -> Scenario:
-    return open_scenario(name)
-
-
-def make_congestion(values: Mapping[str, Any]) -> CongestionPlan:
-    """A plan from a manifest's table.
-
-    Raises:
-        UserError: it is another kind of study, or of another version.
-    """
-    return plan_of(CongestionPlan, "congestion study", values)

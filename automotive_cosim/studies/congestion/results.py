@@ -16,12 +16,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
 from automotive_cosim.studies.congestion.outputs import EDGES, read_edges
-from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S, CongestionPlan, make_congestion
+from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S, CongestionPlan
 from automotive_cosim.studies.congestion.rows import CongestionRow, EdgeRow, FlowCell, FlowSums, MeasureOutcome
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
@@ -35,6 +34,9 @@ HOUR_S = 3_600.0
 @dataclass(frozen=True)
 class CongestionStudy(StudyContent[CongestionPlan, CongestionRow]):
     """The content of a congestion study's folder, with a row per seed."""
+
+    plan_type = CongestionPlan
+    row_type = CongestionRow
 
     @property
     def measures(self) -> tuple[str, ...]:
@@ -70,15 +72,6 @@ class CongestionStudy(StudyContent[CongestionPlan, CongestionRow]):
 
 def _flow(row: EdgeRow) -> FlowSums:
     return FlowSums(time_s=row.time_s, lost_s=row.lost_s, distance_m=row.distance_m)
-
-
-def read_congestion(folder: Path) -> CongestionStudy:
-    """Reads a study's folder, even of a running study.
-
-    Raises:
-        UserError: it is not a congestion study's folder, or is damaged.
-    """
-    return CongestionStudy.read(folder, make_congestion, CongestionRow)
 
 
 @dataclass(frozen=True, slots=True)

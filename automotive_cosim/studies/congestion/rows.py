@@ -78,7 +78,7 @@ class Emitted:
     fuel_g: float
     energy_wh: float
     noise_s: float
-    """Sound energy, as seconds of a car at 50 km/h (``traffic.accounts.LOUD_DB``)."""
+    """Sound energy, as seconds of a car at 50 km/h (``calls.accounts.LOUD_DB``)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -28,7 +28,7 @@ from automotive_cosim.studies.congestion.results import (
 from automotive_cosim.studies.congestion.rows import Emitted, FlowSums, MeasureOutcome
 from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
-from automotive_cosim.studies.tables import NONE, errors_table, told, told_mean
+from automotive_cosim.studies.reroute.tables import NONE, errors_table, told, told_mean
 from automotive_cosim.traffic.network import Network, read_network
 from automotive_cosim.traffic.options import read_configuration
 

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 from scipy import stats
 
-from automotive_cosim import load_study
+from automotive_cosim.studies import load_study
 
 frame = load_study(sys.argv[1])
 for policy, rows in frame.groupby("policy"):

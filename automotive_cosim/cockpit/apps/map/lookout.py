@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from automotive_cosim.cockpit.aboard import Kind, Seat, seated
-from automotive_cosim.cockpit.apps.cabin.screens import KINDS, SEATS
+from automotive_cosim.cockpit.apps.cabin import KINDS, SEATS
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.notices import LOW_KPA
 from automotive_cosim.cockpit.parts import distance, pressure, speed, speed_unit

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from automotive_cosim.cockpit.apps.map.commands import Guide, Take
 from automotive_cosim.cockpit.apps.map.screens import arrival, away, destination, panel, sight, turns_ahead
 from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, NO_GOAL, Navigation
-from automotive_cosim.cockpit.apps.store.state import Installed
+from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, row

@@ -1,0 +1,231 @@
+"""Calendar: the day's appointments, and one of them, to be moved and removed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import numpy as np
+
+from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.commands import Put, Remove
+from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, named, offered, unknown
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column
+from automotive_cosim.cockpit.messages import Back, Show
+from automotive_cosim.cockpit.parts import content, gone, note, picked_at, rows, title
+from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import AppData, State
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Row, Widget
+from automotive_cosim.contracts import Feedback
+from automotive_cosim.contracts.text import joined, say
+
+APPOINTMENTS = 4
+_OCCASIONS = (
+    (say("Check-up"), PlaceKind.HOSPITAL),
+    (say("Team meeting"), PlaceKind.WORK),
+    (say("Meal with Nora"), PlaceKind.RESTAURANT),
+    (say("Parents' evening"), PlaceKind.SCHOOL),
+    (say("Training"), PlaceKind.GYM),
+    (say("Groceries"), PlaceKind.SHOP),
+    (say("Meet the visitors"), PlaceKind.STATION),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Appointment:
+    """An entry of the calendar."""
+
+    at: str
+    title: str
+    place: str
+
+    @property
+    def name(self) -> str:
+        """Tells it from others, regardless of its time."""
+        return say("{first}, {second}", first=self.title, second=self.place)
+
+
+@dataclass(frozen=True, slots=True)
+class Agenda(AppData):
+    """The appointments, by time."""
+
+    entries: tuple[Appointment, ...]
+
+    def commands(self) -> dict[str, Any]:
+        return {
+            "calendar.entries": [
+                {"at": entry.at, "title": entry.title, "place": entry.place} for entry in self.entries
+            ]
+        }
+
+
+def agenda(rng: np.random.Generator, atlas: Gazetteer) -> Agenda:
+    """Draws the day's appointments at places of the network."""
+    hours = np.sort(rng.choice(np.arange(8, 21), APPOINTMENTS, replace=False))
+    entries = []
+    for hour, at in zip(hours, rng.permutation(len(_OCCASIONS))[:APPOINTMENTS], strict=True):
+        title, kind = _OCCASIONS[int(at)]
+        there = atlas.of(kind)
+        if there:
+            place = there[int(rng.integers(len(there)))].name
+            entries.append(Appointment(f"{hour:02d}:{30 * int(rng.integers(2)):02d}", title, place))
+    return Agenda(tuple(entries))
+
+
+NO_PLACE = say("No place is given")
+MOVES_MIN = (
+    ("hour_earlier", "-1 h", -60),
+    ("earlier", "-15 min", -15),
+    ("later", "+15 min", 15),
+    ("hour_later", "+1 h", 60),
+)
+"""Key, text and minutes of the buttons that move an appointment."""
+
+
+def calendar(state: State) -> tuple[Widget, ...]:
+    """The day's appointments; each leads to its place."""
+    area = content(state)
+    inner = area.inset(28, 20)
+    agenda = state.of(Agenda).entries
+    date = say("Today") if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
+
+    def line(index: int, cell: Rect) -> Row:
+        entry = agenda[index]
+        return Row(
+            rect=cell,
+            key=f"calendar.{index}",
+            raised=True,
+            text=joined(" ", (entry.at, entry.title)),
+            detail=entry.place,
+            trail=say("Details"),
+            icon=Icon.CALENDAR,
+            on_tap=Show("appointment", entry.name),
+        )
+
+    return (
+        Card(
+            rect=area,
+            children=(
+                title(inner.top(40), Icon.CALENDAR, date, "calendar.date"),
+                rows(inner.below(56), "calendar.entries", say("Appointments"), state, len(agenda), line, height=76)
+                if agenda
+                else note(inner.below(56), "calendar.empty", say("Nothing today")),
+            ),
+        ),
+    )
+
+
+def appointment(state: State) -> tuple[Widget, ...]:
+    """The entry that was tapped."""
+    area = content(state)
+    inner = area.inset(28, 20)
+    head, _, where, _, times, _, acts = column(inner, 40, 40, 56, 64, 72, REST, 72)
+    agenda = state.of(Agenda).entries
+    at = picked_at(state, "appointment", [entry.name for entry in agenda])
+    if at is None:
+        return gone(inner, "appointment", say("This appointment is no longer there"))
+    entry = agenda[at]
+
+    def put(others: tuple[Appointment, ...], said: str) -> Put:
+        return Put(Agenda(others), said)
+
+    def moved(by_min: int) -> Put:
+        hours, minutes = map(int, entry.at.split(":"))
+        then = (60 * hours + minutes + by_min) % 1440
+        new = replace(entry, at=f"{then // 60:02d}:{then % 60:02d}")
+        return put(
+            (*agenda[:at], new, *agenda[at + 1 :]), say("{title} is at {time}", title=entry.title, time=new.at)
+        )
+
+    cells = times.columns(len(MOVES_MIN), 12)
+    back, there, remove = acts.columns(3, 16)
+    return (
+        Card(
+            rect=area,
+            children=(
+                title(head, Icon.CALENDAR, joined(" ", (entry.at, entry.title)), "appointment.title"),
+                Label(
+                    rect=where,
+                    key="appointment.place",
+                    text=entry.place or NO_PLACE,
+                    description=say("Place"),
+                    style=Type.HEADLINE,
+                ),
+                *(
+                    Button(rect=cell, key=f"appointment.{key}", text=text, icon=Icon.CLOCK, on_tap=moved(by_min))
+                    for cell, (key, text, by_min) in zip(cells, MOVES_MIN, strict=True)
+                ),
+                Button(rect=back, key="appointment.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
+                Button(
+                    rect=there,
+                    key="appointment.place_there",
+                    text=say("Show on the map"),
+                    icon=Icon.GOAL,
+                    on_tap=Show("place", entry.place),
+                    disabled="" if entry.place else NO_PLACE,
+                ),
+                Button(
+                    rect=remove,
+                    key="appointment.remove",
+                    text=say("Remove"),
+                    icon=Icon.DELETE,
+                    on_tap=Remove(
+                        Agenda((*agenda[:at], *agenda[at + 1 :])), say("{name} is removed", name=entry.title)
+                    ),
+                ),
+            ),
+        ),
+    )
+
+
+AppointmentName = Annotated[str, "Its title, or title and place with a comma between, if several have the title."]
+
+
+@offered
+def move_appointment(state: State, appointment: AppointmentName, time: Annotated[str, CLOCK]) -> CallMade:
+    """Move an appointment of today to another time."""
+    at, minute = _index(state, appointment), minute_of(time)
+    if isinstance(at, Feedback):
+        return at
+    if isinstance(minute, Feedback):
+        return minute
+    entries = state.of(Agenda).entries
+    moved = replace(entries[at], at=f"{minute // 60:02d}:{minute % 60:02d}")
+    return Put(Agenda((*entries[:at], moved, *entries[at + 1 :])), "")
+
+
+@offered
+def remove_appointment(state: State, appointment: AppointmentName) -> CallMade:
+    """Remove an appointment of today."""
+    at, entries = _index(state, appointment), state.of(Agenda).entries
+    return at if isinstance(at, Feedback) else Put(Agenda((*entries[:at], *entries[at + 1 :])), "")
+
+
+def _index(state: State, name: str) -> int | Feedback:
+    entries = state.of(Agenda).entries
+    for names in ([entry.name for entry in entries], [entry.title for entry in entries]):
+        found = named(name, names)
+        if found is not None:
+            return names.index(found)
+    return unknown("appointment", name, (entry.name for entry in entries))
+
+
+FUNCTIONS = (move_appointment, remove_appointment)
+
+
+APP = App(
+    name="calendar",
+    title=say("Calendar"),
+    icon=Icon.CALENDAR,
+    order=16,
+    where=Where.STORE,
+    about=say("Today's appointments and how to get there"),
+    functions=FUNCTIONS,
+    pages={"calendar": AppPage(calendar, Room.ONE), "appointment": AppPage(appointment, Room.ONE)},
+    preinstalled=False,
+    starts=lambda state, rng: (agenda(rng, state.of(Gazetteer)),),
+    turn=5,
+)

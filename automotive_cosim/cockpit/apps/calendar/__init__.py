@@ -1,1 +1,0 @@
-"""Calendar: the day's appointments."""

@@ -1,1 +1,0 @@
-"""Charging: the battery, its charge limit and schedule, and stations nearby."""

@@ -1,1 +1,0 @@
-"""Home: the map, the drive, and every app at a glance."""

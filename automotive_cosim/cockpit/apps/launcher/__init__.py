@@ -1,1 +1,0 @@
-"""The launcher: every app, to be opened."""

@@ -1,1 +1,0 @@
-"""Manual: the owner's handbook."""

@@ -1,0 +1,178 @@
+"""Memos: the recorder, and one memo with its removal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.commands import Put, Remove
+from automotive_cosim.cockpit.functions import CallMade, named, offered, unknown
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, panes
+from automotive_cosim.cockpit.messages import Back, Show
+from automotive_cosim.cockpit.parts import content, gone, heading, minutes, note, picked_at, rows, title
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import AppData, Command, State
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Row, Widget
+from automotive_cosim.contracts import Feedback, FeedbackCode
+from automotive_cosim.contracts.text import say
+
+
+@dataclass(frozen=True, slots=True)
+class Memos(AppData):
+    """The memos, and the one that is being recorded."""
+
+    kept: tuple[str, ...] = ()
+    recording_since_s: float | None = None
+
+    def commands(self) -> dict[str, Any]:
+        """The memos, and whether one is being recorded."""
+        return {"apps.memos": list(self.kept), "apps.recording": self.recording_since_s is not None}
+
+
+@dataclass(frozen=True, slots=True)
+class Record(Command):
+    """Begin or end a spoken memo."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The memos, and that one is being recorded."""
+        return frozenset({"apps.memos", "apps.recording"})
+
+    def perform(self, state: State) -> Feedback:
+        """The begin, or the memo."""
+        memos = state.of(Memos)
+        if memos.recording_since_s is None:
+            state.keep(replace(memos, recording_since_s=state.time_s))
+            return Feedback(FeedbackCode.OK, say("the memo is being recorded"))
+        seconds = int(state.time_s - memos.recording_since_s)
+        memo = say(
+            "Memo {number}, {time}, {length}",
+            number=len(memos.kept) + 1,
+            time=state.clock,
+            length=f"{seconds // 60}:{seconds % 60:02d}",
+        )
+        state.keep(Memos((*memos.kept, memo)))
+        return Feedback(FeedbackCode.OK, say("{memo} is kept", memo=memo))
+
+
+def memo(state: State) -> tuple[Widget, ...]:
+    """Records spoken notes."""
+    left, right = panes(content(state), REST, REST)
+    head, _, picture, _, time, _, record = column(left.inset(28, 20), 40, 50, 128, 22, 52, REST, 88)
+    since = state.of(Memos).recording_since_s
+    memos = state.of(Memos).kept
+
+    def line(index: int, cell: Rect) -> Row:
+        return Row(
+            rect=cell,
+            key=f"memo.{index}",
+            text=memos[index],
+            trail=say("Details"),
+            icon=Icon.MEMO,
+            on_tap=Show("note", memos[index]),
+        )
+
+    return (
+        Card(
+            rect=left,
+            children=(
+                title(head, Icon.MEMO, say("Memo")),
+                Glyph(
+                    rect=picture,
+                    icon=Icon.MICROPHONE,
+                    size=112,
+                    tone="warning" if since is not None else "muted",
+                ),
+                Label(
+                    rect=time,
+                    key="memo.time",
+                    text=minutes(state.time_s - since) if since is not None else say("Ready"),
+                    description=say("Recording") if since is not None else say("Memo"),
+                    style=Type.HEADLINE,
+                    align="centre",
+                ),
+                Button(
+                    rect=record,
+                    key="memo.record",
+                    text=say("Record") if since is None else say("Stop"),
+                    icon=Icon.RECORD if since is None else Icon.STOP,
+                    icon_size=34,
+                    style=Type.TITLE,
+                    look=Look.ACCENT if since is None else Look.CRITICAL,
+                    on_tap=Record(),
+                ),
+            ),
+        ),
+        heading(right.top(32), say("Memos")),
+        rows(right.below(44), "memo.all", say("Memos"), state, len(memos), line, height=60)
+        if memos
+        else note(right.below(44), "memo.empty", say("No memos yet")),
+    )
+
+
+def memo_note(state: State) -> tuple[Widget, ...]:
+    """The memo that was tapped; it is deleted here, so that nobody deletes by looking."""
+    area = content(state)
+    inner = area.inset(28, 20)
+    head, _, words, _, acts = column(inner, 40, 24, 160, REST, 72)
+    memos = state.of(Memos).kept
+    at = picked_at(state, "note", memos)
+    if at is None:
+        return gone(inner, "note", say("This memo is no longer there"))
+    back, _, delete = acts.columns(3, 16)
+    return (
+        Card(
+            rect=area,
+            children=(
+                title(head, Icon.MEMO, say("Memo")),
+                Label(rect=words, key="note.text", text=memos[at], style=Type.HEADLINE, lines=3),
+                Button(rect=back, key="note.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
+                Button(
+                    rect=delete,
+                    key="note.delete",
+                    text=say("Delete"),
+                    icon=Icon.DELETE,
+                    on_tap=Remove(
+                        replace(state.of(Memos), kept=(*memos[:at], *memos[at + 1 :])),
+                        say("{memo} is deleted", memo=memos[at]),
+                    ),
+                ),
+            ),
+        ),
+    )
+
+
+@offered
+def record_memo(state: State) -> CallMade:
+    """Begin to record a spoken memo, or end the one that is being recorded."""
+    return Record()
+
+
+@offered
+def delete_memo(state: State, memo: Annotated[str, "The memo, as the screen memo tells it."]) -> CallMade:
+    """Delete a memo."""
+    memos = state.of(Memos)
+    found = named(memo, memos.kept)
+    if found is None:
+        return unknown("memo", memo, memos.kept)
+    at = memos.kept.index(found)
+    return Put(replace(memos, kept=(*memos.kept[:at], *memos.kept[at + 1 :])), "")
+
+
+FUNCTIONS = (record_memo, delete_memo)
+
+
+APP = App(
+    name="memo",
+    title=say("Memos"),
+    icon=Icon.MEMO,
+    order=14,
+    where=Where.STORE,
+    about=say("Spoken notes"),
+    functions=FUNCTIONS,
+    pages={"memo": AppPage(memo), "note": AppPage(memo_note, Room.ONE)},
+    aliases={"memos": ""},
+    starts=lambda state, rng: (Memos(),),
+)

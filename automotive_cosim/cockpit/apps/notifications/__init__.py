@@ -1,1 +1,0 @@
-"""The notifications: what requires attention now, and earlier notices."""

@@ -1,1 +1,0 @@
-"""Parking: pays for a space from the car."""

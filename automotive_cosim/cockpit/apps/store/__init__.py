@@ -1,1 +1,0 @@
-"""The store: apps that can be installed and removed."""

@@ -1,0 +1,177 @@
+"""The timer: its length, the time that is left, and the button that starts and stops it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le, MultipleOf
+
+from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.functions import CallMade, offered
+from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.parts import HELD_STEPS, choices, content, heading, minutes, title
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import AppData, Command, State
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Label, Look, Widget
+from automotive_cosim.contracts import Feedback, Severity, Surroundings
+from automotive_cosim.contracts.text import say
+
+STEP_MIN, MOST_MIN = 5, 240
+
+
+@dataclass(frozen=True, slots=True)
+class Countdown(AppData):
+    """The length that is set, and the countdown that runs."""
+
+    minutes: int = 15
+    begun_s: float | None = None
+    """Simulation time at which it began; None while none runs."""
+
+    def longer(self, by_min: int) -> Countdown:
+        """Longer, or shorter, within the bounds; one that runs ends later, or earlier."""
+        return replace(self, minutes=min(MOST_MIN, max(STEP_MIN, self.minutes + by_min)))
+
+    def left_s(self, time_s: float) -> float:
+        """Seconds until it ends."""
+        passed_s = 0.0 if self.begun_s is None else time_s - self.begun_s
+        return max(0.0, 60 * self.minutes - passed_s)
+
+    def commands(self) -> dict[str, Any]:
+        """The length, and whether it runs."""
+        return {"timer.minutes": self.minutes, "timer.running": self.begun_s is not None}
+
+    def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
+        """Tells the driver when it is over."""
+        if self.begun_s is not None and self.left_s(state.time_s) <= 0:
+            state.keep(replace(self, begun_s=None))
+            words = say("{minutes} minutes are up", minutes=self.minutes)
+            state.notify(words, Icon.CLOCK, Severity.WARNING, opens=("timer", ""))
+
+
+@dataclass(frozen=True, slots=True)
+class StartTimer(Command):
+    """Count down from the length that is set."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        return frozenset({"timer.running"})
+
+    def perform(self, state: State) -> Feedback:
+        """The countdown, from now on."""
+        now = state.of(Countdown)
+        return state.change(
+            replace(now, begun_s=state.time_s), say("the timer runs for {minutes} minutes", minutes=now.minutes)
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class StopTimer(Command):
+    """Stop the countdown."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        return frozenset({"timer.running"})
+
+    def perform(self, state: State) -> Feedback:
+        return state.change(replace(state.of(Countdown), begun_s=None), say("The timer is stopped"))
+
+
+LENGTHS_MIN = (5, 10, 15, 20, 30, 60, 120)
+
+
+def timer(state: State) -> tuple[Widget, ...]:
+    """While it runs, another length makes it end earlier or later."""
+    area = content(state)
+    head, _, line, _, bar, _, name, _, lengths, _, act = column(
+        area.inset(32, 24), 40, 32, 104, 20, 12, 40, 28, 8, 72, REST, 88
+    )
+    less, time, more = row(line, 104, REST, 104)
+    now = state.of(Countdown)
+    runs = now.begun_s is not None
+    left_s = now.left_s(state.time_s)
+
+    def put(length: Countdown) -> Put:
+        return Put(length, say("{minutes} minutes are set", minutes=length.minutes))
+
+    def step(key: str, words: str, icon: Icon, by_min: int, bound: int, why: str) -> Button:
+        return Button(
+            rect=less if by_min < 0 else more,
+            key=f"timer.{key}",
+            description=words,
+            icon=icon,
+            icon_size=44,
+            on_tap=put(now.longer(by_min)),
+            on_hold=put(now.longer(HELD_STEPS * by_min)),
+            disabled=why if now.minutes == bound else "",
+        )
+
+    return (
+        Card(
+            rect=area,
+            children=(
+                title(head, Icon.CLOCK, say("Timer"), "timer.title"),
+                step("less", say("Five minutes less"), Icon.MINUS, -STEP_MIN, STEP_MIN, say("It is at its lowest")),
+                Label(
+                    rect=time,
+                    key="timer.left",
+                    text=minutes(left_s),
+                    description=say("Time left") if runs else say("Duration"),
+                    style=Type.DISPLAY,
+                    align="centre",
+                ),
+                step("more", say("Five minutes more"), Icon.PLUS, STEP_MIN, MOST_MIN, say("It is at its highest")),
+                Bar(rect=bar, share=round(left_s / (60 * now.minutes), 2)),
+                heading(name, say("Minutes")),
+                choices(
+                    lengths,
+                    "timer.length",
+                    [
+                        (str(length), str(length), None, length == now.minutes, put(replace(now, minutes=length)))
+                        for length in LENGTHS_MIN
+                    ],
+                ),
+                Button(
+                    rect=act,
+                    key="timer.run",
+                    text=say("Stop") if runs else say("Start"),
+                    icon=Icon.STOP if runs else Icon.PLAY,
+                    icon_size=34,
+                    style=Type.TITLE,
+                    look=Look.CRITICAL if runs else Look.ACCENT,
+                    on_tap=StopTimer() if runs else StartTimer(),
+                ),
+            ),
+        ),
+    )
+
+
+@offered
+def set_timer(
+    state: State, minutes: Annotated[int, "Its length.", Ge(STEP_MIN), Le(MOST_MIN), MultipleOf(STEP_MIN)]
+) -> CallMade:
+    """Set the length of the timer; one that runs ends earlier or later."""
+    return Put(replace(state.of(Countdown), minutes=minutes), "")
+
+
+@offered
+def run_timer(state: State, on: Annotated[bool, "True starts it, false stops it."]) -> CallMade:
+    """Start the timer with the length that is set, or stop it."""
+    return StartTimer() if on else StopTimer()
+
+
+FUNCTIONS = (set_timer, run_timer)
+
+
+APP = App(
+    name="timer",
+    title=say("Timer"),
+    icon=Icon.CLOCK,
+    order=20,
+    where=Where.STORE,
+    about=say("Counts down minutes and alerts you"),
+    preinstalled=False,
+    functions=FUNCTIONS,
+    pages={"timer": AppPage(timer, Room.ONE)},
+    starts=lambda state, rng: (Countdown(),),
+)

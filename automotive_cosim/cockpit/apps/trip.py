@@ -1,0 +1,201 @@
+"""The trip computer: trip A, and trip B, which keeps counting when A is reset."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal
+
+from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.functions import CallMade, offered
+from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.messages import Back, Show
+from automotive_cosim.cockpit.parts import content, distance, fact, minutes, speed, speed_unit, title
+from automotive_cosim.cockpit.signals import ENERGY, HMI
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import AppData, Command, State
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.vehicle import BATTERY_KWH
+from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Widget
+from automotive_cosim.contracts import Feedback, FeedbackCode, Surroundings
+from automotive_cosim.contracts.text import Quantity, say
+
+Reading = tuple[float, float, float]
+"""Driven metres, simulation time in seconds and battery level in percent."""
+
+
+def odometer(state: State) -> Reading:
+    """The present reading."""
+    driven_m = 0.0 if state.outside is None else state.outside.driving.distance_m
+    return driven_m, state.time_s, state.signals[ENERGY.LEVEL]
+
+
+@dataclass(frozen=True, slots=True)
+class TripMeter:
+    """What a trip meter has counted up to a reading of the odometer, from which it counts on."""
+
+    driven_m: float = 0.0
+    took_s: float = 0.0
+    used_kwh: float = 0.0
+    since: Reading = (0.0, 0.0, 0.0)
+    """Driven metres, time and battery (``odometer``) from which it counts on: at departure or the reset."""
+    resets: int = 0
+
+    def at(self, reading: Reading, battery_kwh: float) -> tuple[float, float, float]:
+        """Metres, seconds and kWh that it shows at a reading of the odometer."""
+        (metres, seconds, level), (from_m, from_s, from_level) = reading, self.since
+        used_kwh = max(0.0, from_level - level) / 100 * battery_kwh
+        return self.driven_m + max(0.0, metres - from_m), self.took_s + seconds - from_s, self.used_kwh + used_kwh
+
+
+FROM_HERE = TripMeter()
+"""A trip meter that has counted nothing yet."""
+
+
+@dataclass(frozen=True, slots=True)
+class TripMeters(AppData):
+    """Trip A counts from its reset, trip B keeps counting when A is reset."""
+
+    resets: int = 0
+    since: Reading = (0.0, 0.0, 0.0)
+    """From which trip A counts."""
+    b: TripMeter = FROM_HERE
+
+    def commands(self) -> dict[str, Any]:
+        """How often each was reset."""
+        return {"trip.resets": self.resets, "trip.resets_b": self.b.resets}
+
+    def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
+        """At departure, both count on from here."""
+        if before is None:
+            here = odometer(state)
+            state.keep(replace(self, since=here, b=replace(self.b, since=here)))
+
+
+@dataclass(frozen=True, slots=True)
+class ResetTrip(Command):
+    """Count distance and time from here."""
+
+    meter: Literal["a", "b"] = "a"
+
+    def aims(self, state: State) -> frozenset[str]:
+        return frozenset({"trip.resets_b" if self.meter == "b" else "trip.resets"})
+
+    def perform(self, state: State) -> Feedback:
+        """The meter at zero."""
+        trip, here = state.of(TripMeters), odometer(state)
+        if self.meter == "a":
+            state.keep(replace(trip, resets=trip.resets + 1, since=here))
+            return Feedback(FeedbackCode.OK, say("the trip computer is reset"))
+        state.keep(replace(trip, b=TripMeter(since=here, resets=trip.b.resets + 1)))
+        return Feedback(FeedbackCode.OK, say("trip B is reset"))
+
+
+def trip(state: State) -> tuple[Widget, ...]:
+    """Distance, time and consumption since the last reset."""
+    signals, area = state.signals, content(state)
+    head, _, body, _, acts = column(area.inset(32, 24), 40, 20, 312, REST, 72)
+    reset, _, other = row(acts, 320, REST, 320)
+    metres, seconds, level = odometer(state)
+    from_m, from_s, from_level = state.of(TripMeters).since
+    driven_m, took_s, used_pct = max(0.0, metres - from_m), seconds - from_s, max(0.0, from_level - level)
+    mean_kmh = 3.6 * driven_m / took_s if took_s > 0 else 0.0
+    used_kwh = used_pct / 100 * BATTERY_KWH
+    unit_m, unit = (1609.344, "mi") if signals[HMI.DISTANCE_UNIT] == "MILES" else (1000.0, "km")
+    per_100 = 100 * unit_m * used_kwh / driven_m if driven_m > 100 else 0.0
+    tiles = (
+        ("trip.distance", say("Distance"), distance(signals, driven_m), Icon.ROUTE),
+        ("trip.time", say("Driving time"), minutes(took_s), Icon.CLOCK),
+        ("trip.speed", say("Average speed"), f"{speed(signals, mean_kmh)} {speed_unit(signals)}", Icon.SPEED),
+        ("trip.energy", say("Energy"), Quantity(f"{used_kwh:.2f} kWh"), Icon.BATTERY),
+        ("trip.consumption", say("Consumption"), Quantity(f"{per_100:.1f} kWh/100 {unit}"), Icon.CHARGING),
+        ("trip.range", say("Range"), distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
+    )
+    cells = [cell for line in body.rows(2, 16) for cell in line.columns(3, 16)]
+    children: list[Widget] = [title(head, Icon.TRIP, say("Trip A"), "trip.title")]
+    for cell, (key, name, value, icon) in zip(cells, tiles, strict=True):
+        upper, _, lower = column(cell.inset(20, 16), 32, REST, 56)
+        picture, _, words = row(upper, 32, 12, REST)
+        children.append(
+            Card(
+                rect=cell,
+                look="raised",
+                children=(
+                    Glyph(rect=picture, icon=icon, size=28, tone="accent"),
+                    Label(rect=words, text=name, style=Type.LABEL, tone="muted"),
+                    Label(rect=lower, key=key, text=value, description=name, style=Type.HEADLINE),
+                ),
+            )
+        )
+    children.append(Button(rect=reset, key="trip.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=ResetTrip()))
+    children.append(
+        Button(
+            rect=other,
+            key="trip.other",
+            text=say("Trip B"),
+            icon=Icon.TRIP,
+            on_tap=Show("trip_b"),
+        )
+    )
+    return (Card(rect=area, children=tuple(children)),)
+
+
+def trip_b(state: State) -> tuple[Widget, ...]:
+    """Distance, time and energy of trip B; the mean is left to the reader."""
+    area = content(state)
+    head, _, body, _, buttons = column(area.inset(32, 24), 40, 20, 3 * 64, REST, 72)
+    driven_m, took_s, used_kwh = state.of(TripMeters).b.at(odometer(state), BATTERY_KWH)
+    facts = (
+        ("trip_b.distance", say("Distance"), distance(state.signals, driven_m)),
+        ("trip_b.time", say("Driving time"), minutes(took_s)),
+        ("trip_b.energy", say("Energy"), Quantity(f"{used_kwh:.1f} kWh")),
+    )
+    lines = body.left(640).rows(3, 8)
+    return (
+        Card(
+            rect=area,
+            children=(
+                title(head, Icon.TRIP, say("Trip B"), "trip_b.title"),
+                *(
+                    widget
+                    for rect, (key, name, value) in zip(lines, facts, strict=True)
+                    for widget in fact(rect, key, name, value)
+                ),
+                Button(
+                    rect=buttons.left(320),
+                    key="trip_b.reset",
+                    text=say("Reset"),
+                    icon=Icon.TRIP,
+                    on_tap=ResetTrip("b"),
+                ),
+                Button(
+                    rect=buttons.right_part(320),
+                    key="trip_b.back",
+                    text=say("Trip A"),
+                    icon=Icon.BACK,
+                    on_tap=Back(),
+                ),
+            ),
+        ),
+    )
+
+
+@offered
+def reset_trip(state: State, meter: Annotated[Literal["a", "b"], "Which trip meter."]) -> CallMade:
+    """Reset a trip meter: count distance and time from here."""
+    return ResetTrip(meter)
+
+
+FUNCTIONS = (reset_trip,)
+
+
+APP = App(
+    name="trip",
+    title=say("Trip"),
+    icon=Icon.TRIP,
+    order=15,
+    where=Where.STORE,
+    about=say("Distance, time and consumption"),
+    functions=FUNCTIONS,
+    pages={"trip": AppPage(trip, Room.ONE), "trip_b": AppPage(trip_b, Room.ONE)},
+    starts=lambda state, rng: (TripMeters(),),
+)

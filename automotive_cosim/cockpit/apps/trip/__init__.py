@@ -1,1 +1,0 @@
-"""Trip: two trip meters."""

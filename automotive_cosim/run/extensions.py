@@ -1,0 +1,85 @@
+"""What extends the package, which knows nothing of it: a sub-package with a module ``extension``, that says in
+``EXTENSION`` which commands and which kinds of results folder it has.
+
+An installation without the sub-package lacks these and nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Any
+
+import automotive_cosim
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+
+if TYPE_CHECKING:
+    import typer
+
+
+@dataclass(frozen=True, slots=True)
+class ResultsKind:
+    """What can be done with a kind of results folder, as names of functions: ``package.module:function``."""
+
+    page: str
+    """Of the folder; writes the report into it and returns ``report.html``."""
+    served: Mapping[str, str] = field(default_factory=dict)
+    """What the pages of ``serve`` ask, by the last part of its address; each of the folder, and of the item."""
+
+    def write_page(self, folder: Path) -> Path:
+        """Writes the folder's report; returns its page.
+
+        Raises:
+            UserError: the folder has no results, is damaged, or cannot be written.
+            SetupError: the extra ``report`` is not installed.
+        """
+        page: Path = resolve_name(self.page)(folder)
+        return page
+
+    def shown(self, part: str, folder: Path, *items: str) -> Json | None:
+        """What a page of ``serve`` shows of the folder; None if there is no such part.
+
+        Raises:
+            UserError: it is not in the folder, or cannot be read.
+        """
+        if part not in self.served:
+            return None
+        values: Json = resolve_name(self.served[part])(folder, *items)
+        return values
+
+
+@dataclass(frozen=True, slots=True)
+class Extension:
+    """What a sub-package adds."""
+
+    add_commands: Callable[[typer.Typer, Mapping[str, typer.Typer]], None]
+    """Adds its commands to the command line, and to groups of it by their names."""
+    kinds: Mapping[str, ResultsKind]
+    """By the word under ``study`` in the plan of a folder's manifest."""
+
+
+@cache
+def extensions() -> tuple[Extension, ...]:
+    """All that are installed."""
+    home = Path(automotive_cosim.__file__).parent
+    names = sorted(path.parent.name for path in home.glob("*/extension.py"))
+    return tuple(import_module(f"{automotive_cosim.__name__}.{name}.extension").EXTENSION for name in names)
+
+
+def kind_of(plan: Mapping[str, Any]) -> ResultsKind | None:
+    """The kind of a folder with that plan in its manifest; None for one of the package's own.
+
+    Raises:
+        UserError: no extension here has that kind.
+    """
+    if "study" not in plan:
+        return None
+    for each in extensions():
+        if plan["study"] in each.kinds:
+            return each.kinds[plan["study"]]
+    raise UserError(f"the folder has a study of kind {plan['study']!r}, which this installation cannot read")

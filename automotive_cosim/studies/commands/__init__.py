@@ -1,0 +1,12 @@
+"""``automotive-cosim study``: what rerouting saves, what a measure does to congestion."""
+
+import typer
+
+from automotive_cosim.studies.commands.compare import compare
+from automotive_cosim.studies.commands.congestion import congestion
+from automotive_cosim.studies.commands.days import days
+from automotive_cosim.studies.commands.reroute import reroute
+
+app = typer.Typer(help="Measure what rerouting saves and what a measure does to congestion.", no_args_is_help=True)
+for command in (reroute, congestion, days, compare):
+    app.command()(command)

@@ -1,0 +1,37 @@
+"""What studies add to the package: their commands, and their kinds of results folder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import typer
+
+from automotive_cosim.run.extensions import Extension, ResultsKind
+from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
+
+HOME = "automotive_cosim.studies"
+
+
+def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
+    """Adds ``study``, and ``calibrate`` and ``equilibrate`` to ``scenarios``."""
+    from automotive_cosim.cli.options import RUN
+    from automotive_cosim.studies import commands
+    from automotive_cosim.studies.commands.calibrate import calibrate_scenario
+    from automotive_cosim.studies.commands.equilibrate import equilibrate_scenario
+
+    app.add_typer(commands.app, name="study", rich_help_panel=RUN)
+    groups["scenarios"].command("calibrate")(calibrate_scenario)
+    groups["scenarios"].command("equilibrate")(equilibrate_scenario)
+
+
+EXTENSION = Extension(
+    add_commands,
+    {
+        RerouteSettings.kind: ResultsKind(
+            f"{HOME}.reroute.page:write_study",
+            {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
+        ),
+        CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion"),
+        DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days"),
+    },
+)

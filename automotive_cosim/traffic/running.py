@@ -1,0 +1,70 @@
+"""What runs in a simulation's process, as seen by functions that others have called there.
+
+``fork.RemoteTraffic.call`` and ``begin`` take a function of any module, whose first argument this is. It is sent by
+name, so nothing here knows what is called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol, TypeVar
+
+from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.sumo import LibSumo, load_library
+from automotive_cosim.traffic.world import World
+
+
+class Watcher(Protocol):
+    """Something that follows the traffic from now on; a copy of the process has its own."""
+
+    def after_step(self) -> None:
+        """Called after every step, once the driver has had its turn."""
+        ...
+
+
+W = TypeVar("W", bound=Watcher)
+
+
+class Running:
+    """The traffic, and the ego's drive once it has departed."""
+
+    def __init__(self, world: World, beat: Callable[[], None] = lambda: None) -> None:
+        """Nobody watches yet.
+
+        Args:
+            world: the traffic, warmed up.
+            beat: gives a sign of life, called after every step.
+        """
+        self.world = world
+        self.drive: EgoDrive | None = None
+        self.watchers: list[Watcher] = []
+        self.done: tuple[float, float] | None = None
+        """How much of a long call is done, and of how much, if it says so."""
+        self._beat = beat
+
+    @property
+    def sumo(self) -> LibSumo:
+        """SUMO's own library."""
+        return load_library()
+
+    def watcher(self, kind: type[W]) -> W:
+        """The watcher of that kind.
+
+        Raises:
+            LookupError: nobody has begun to watch so.
+        """
+        for each in self.watchers:
+            if isinstance(each, kind):
+                return each
+        raise LookupError(f"the traffic has no {kind.__name__}")
+
+    def step(self) -> None:
+        """One step of the traffic without its ego."""
+        self.world.step()
+        self.after_step()
+
+    def after_step(self) -> None:
+        """Called after every step."""
+        for each in self.watchers:
+            each.after_step()
+        self._beat()

@@ -1,0 +1,309 @@
+"""The table of what the import makes of OpenSCENARIO's elements and attributes, held against what it does."""
+
+from __future__ import annotations
+
+import re
+from copy import deepcopy
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.exchange.catalogs import Catalogs
+from automotive_cosim.exchange.incoming import road_network, scenario_text
+from automotive_cosim.exchange.places import RoadPlaces
+from automotive_cosim.exchange.storyboard import read_story
+from automotive_cosim.exchange.tree import XmlElement, read_tree
+from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
+
+LANE = '<lane id="{}" type="driving" level="false"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>'
+SECTION = """<laneSection s="{}"><left>{}</left><center>
+<lane id="0" type="none" level="false"/></center><right>{}</right>
+</laneSection>"""
+
+
+def section(at_m, right=3):
+    """A lane section with three lanes on the left."""
+    left, right_ = (
+        "".join(LANE.format(sign * each) for each in range(1, n + 1)) for sign, n in ((1, 3), (-1, right))
+    )
+    return SECTION.format(at_m, left, right_)
+
+
+def road(*sections, rule="RHT"):
+    """A straight road of 1200 m along the x axis, so that x is s."""
+    return f"""<OpenDRIVE><header revMajor="1" revMinor="6"/><road name="main" length="1200" id="1" junction="-1"
+rule="{rule}"><planView><geometry s="0" x="0" y="0" hdg="0" length="1200"><line/></geometry></planView>
+<lanes>{"".join(sections)}</lanes></road></OpenDRIVE>"""
+
+
+VEHICLE = """<Vehicle name="{}" vehicleCategory="car" mass="1" role="none" model3d="x"><ParameterDeclarations>
+<ParameterDeclaration name="size" parameterType="double" value="1.8"/></ParameterDeclarations><BoundingBox>
+<Center x="1.4" y="0" z="0.75"/><Dimensions width="$size" length="4.5" height="1.5"/></BoundingBox>
+<Trailer><TrailerRef entityRef=""/></Trailer></Vehicle>"""
+SKY = """<Environment name="{}"><ParameterDeclarations><ParameterDeclaration name="far" parameterType="double"
+value="150"/></ParameterDeclarations><TimeOfDay animation="true" dateTime="2026-11-05T07:30:00"/>
+<Weather fractionalCloudCover="twoOktas" cloudState="cloudy" temperature="278.15" atmosphericPressure="1000">
+<Fog visualRange="$far"/><Precipitation precipitationType="rain" intensity="0.1" precipitationIntensity="3"/>
+</Weather></Environment>"""
+ROUTE = """<Route name="{}" closed="false"><ParameterDeclarations><ParameterDeclaration name="end"
+parameterType="double" value="900"/></ParameterDeclarations><Waypoint routeStrategy="shortest"><Position>
+<LanePosition roadId="1" laneId="-2" s="700"/></Position></Waypoint><Waypoint routeStrategy="shortest"><Position>
+<LanePosition roadId="1" laneId="-2" s="$end"/></Position></Waypoint></Route>"""
+TIME = """<Condition name="c" delay="{}" conditionEdge="{}"><ByValueCondition><SimulationTimeCondition value="{}"
+rule="greaterThan"/></ByValueCondition></Condition>"""
+SPEED = """<LongitudinalAction><SpeedAction><SpeedActionDynamics dynamicsShape="{}"
+dynamicsDimension="{}" value="{}" followingMode="position"/>
+<SpeedActionTarget>{}</SpeedActionTarget></SpeedAction></LongitudinalAction>"""
+LANES = """<LateralAction><LaneChangeAction targetLaneOffset="0.1"><LaneChangeActionDynamics
+dynamicsShape="sinusoidal" dynamicsDimension="time" value="3" followingMode="position"/>
+<LaneChangeTarget>{}</LaneChangeTarget>
+</LaneChangeAction></LateralAction>"""
+OFF = """<ControllerAction><OverrideControllerValueAction><Throttle value="0" active="false"/><Brake value="0"
+active="false"/><Clutch value="0" active="false"/><ParkingBrake value="0" active="false"/><SteeringWheel value="0"
+active="false"/><Gear number="0" active="false"/></OverrideControllerValueAction></ControllerAction>"""
+HANDS = """<ControllerAction><AssignControllerAction activateLateral="false" activateLongitudinal="false">
+<Controller name="x"/></AssignControllerAction></ControllerAction><ControllerAction><ActivateControllerAction
+lateral="false" longitudinal="false"/></ControllerAction>"""
+MANEUVER = """<Maneuver name="{}"><ParameterDeclarations><ParameterDeclaration name="to" parameterType="double"
+value="3"/></ParameterDeclarations>{}</Maneuver>"""
+
+
+def position(what):
+    return f"<Position>{what}</Position>"
+
+
+def private(name, place, *actions):
+    told = "".join(map(do, actions))
+    teleport = f"<PrivateAction><TeleportAction>{position(place)}</TeleportAction></PrivateAction>"
+    return f'<Private entityRef="{name}">{teleport}{told}</Private>'
+
+
+def trigger(kind, *conditions):
+    return f"<{kind}><ConditionGroup>{''.join(conditions)}</ConditionGroup></{kind}>"
+
+
+def entities(what, edge="rising"):
+    return f"""<Condition name="c" delay="1" conditionEdge="{edge}"><ByEntityCondition><TriggeringEntities
+triggeringEntitiesRule="any"><EntityRef entityRef="other"/><EntityRef entityRef="third"/></TriggeringEntities>
+<EntityCondition>{what}</EntityCondition></ByEntityCondition></Condition>"""
+
+
+def event(name, action, *conditions):
+    return f"""<Event name="{name}" priority="overwrite" maximumExecutionCount="1"><Action name="do {name}">{action}
+</Action>{trigger("StartTrigger", *conditions)}</Event>"""
+
+
+def do(action):
+    return f"<PrivateAction>{action}</PrivateAction>"
+
+
+DISTANCE = 'entityRef="ego" value="20" freespace="true" rule="lessThan" relativeDistanceType="euclidianDistance"'
+WHILE = (
+    '<ReachPositionCondition tolerance="3"><Position><LanePosition roadId="1" laneId="-2" s="400"/></Position>'
+    "</ReachPositionCondition>",
+    f"<RelativeDistanceCondition {DISTANCE}/>",
+    f'<TimeHeadwayCondition alongRoute="true" {DISTANCE}/>',
+    '<TimeToCollisionCondition value="2" freespace="true" rule="lessThan" relativeDistanceType="euclidianDistance">'
+    '<TimeToCollisionConditionTarget><EntityRef entityRef="ego"/></TimeToCollisionConditionTarget>'
+    "</TimeToCollisionCondition>",
+    '<SpeedCondition value="9" rule="lessThan"/>',
+    '<AccelerationCondition value="1" rule="lessThan"/>',
+    '<RelativeSpeedCondition entityRef="ego" value="1" rule="lessThan"/>',
+    '<StandStillCondition duration="2"/>',
+    '<EndOfRoadCondition duration="2"/>',
+    '<TraveledDistanceCondition value="50"/>',
+)
+EVENTS = "".join(
+    event(f"e{number}", do(SPEED.format("linear", "rate", number + 1, '<AbsoluteTargetSpeed value="3"/>')),
+          entities(what))
+    for number, what in enumerate(WHILE)
+)  # fmt: skip
+STATE = """<Condition name="c" delay="0" conditionEdge="none"><ByValueCondition><StoryboardElementStateCondition
+storyboardElementType="{}" storyboardElementRef="{}" state="{}"/></ByValueCondition></Condition>"""
+IF = """<Condition name="c" delay="0" conditionEdge="none"><ByValueCondition><ParameterCondition parameterRef="is"
+rule="equalTo" value="yes"/></ByValueCondition></Condition>"""
+ASKED = SPEED.format("step", "time", 0, '<AbsoluteTargetSpeed value="${$v / 3.6}"/>')
+FACTOR = '<RelativeTargetSpeed entityRef="ego" value="1.2" speedTargetValueType="factor" continuous="false"/>'
+DELTA = '<RelativeTargetSpeed entityRef="ego" value="$to" speedTargetValueType="delta" continuous="true"/>'
+AHEAD = '<Position><WorldPosition x="900" y="-5.2"/></Position>'
+PLACES = {
+    "ego": ('<LanePosition roadId="1" laneId="-2" offset="0.2" s="50"/>', ASKED,
+            '<VisibilityAction graphics="true" sensors="true" traffic="true"/>',
+            f"<RoutingAction><AssignRouteAction>{ROUTE.format('r')}</AssignRouteAction></RoutingAction>"),
+    "other": ('<LanePosition roadId="1" laneId="-3" s="80"><Orientation type="relative" h="0.1"/></LanePosition>',
+              SPEED.format("step", "time", 0, FACTOR),
+              f"<RoutingAction><AcquirePositionAction>{AHEAD}</AcquirePositionAction></RoutingAction>",
+              OFF, *re.findall("(?s)<ControllerAction>.*?</ControllerAction>", HANDS)),
+    "third": ('<RelativeLanePosition entityRef="other" dLane="1" ds="20" offset="0.1"/>',
+              '<RoutingAction><AssignRouteAction><CatalogReference catalogName="Route" entryName="there"/>'
+              "</AssignRouteAction></RoutingAction>"),
+    "fourth": ('<RelativeRoadPosition entityRef="other" ds="40" dt="0.1"/>',),
+    "fifth": ('<RelativeObjectPosition entityRef="third" dx="60" dy="0.1"/>',),
+    "sixth": ('<RelativeWorldPosition entityRef="third" dx="80" dy="0.1"/>',),
+    "eighth": ('<WorldPosition x="300" y="-3.6"/>',),
+    "seventh": ('<RoadPosition roadId="1" s="250" t="-5.2"/>',),
+}  # fmt: skip
+SIZES = "".join(f'<ParameterAssignment parameterRef="{name}" value="{value}"/>' for name, value in
+                (("size", 2), ("long", 6)))  # fmt: skip
+OTHER_CAR = f"""<CatalogReference catalogName="Vehicle" entryName="long"><ParameterAssignments>{SIZES}
+</ParameterAssignments></CatalogReference>"""
+CARS = "".join(
+    f'<ScenarioObject name="{name}">{OTHER_CAR if name == "other" else VEHICLE.format("v")}</ScenarioObject>'
+    for name in PLACES
+)
+FOLDERS = "".join(
+    f'<{kind}Catalog><Directory path="{kind}"/></{kind}Catalog>'
+    for kind in ("Environment", "Maneuver", "MiscObject", "Pedestrian", "Route", "Trajectory", "Vehicle")
+)
+MOVES = "".join((
+    event("moves", do(LANES.format('<RelativeTargetLane entityRef="ego" value="1"/>')), TIME.format(1, "none", 9),
+          IF),
+    event("brakes", do(SPEED.format("linear", "time", 2, '<AbsoluteTargetSpeed value="$to"/>')),
+          STATE.format("event", "moves", "endTransition")),
+    event("returns", do(LANES.format('<AbsoluteTargetLane value="-2"/>')),
+          *(STATE.format(*each) for each in (
+            ("act", "a", "startTransition"), ("action", "do moves", "runningState"),
+            ("maneuver", "m", "completeState"), ("maneuverGroup", "g", "startTransition")))),
+    event("sky", "<GlobalAction><EnvironmentAction><CatalogReference catalogName='Environment' entryName='fog'/>"
+          "</EnvironmentAction></GlobalAction>", TIME.format(0, "none", 8)),
+    EVENTS,
+))  # fmt: skip
+FILE = f"""<?xml version="1.0" encoding="UTF-8"?>
+<OpenSCENARIO><FileHeader revMajor="1" revMinor="1" date="2026-01-01T00:00:00" description="d" author="a"/>
+<ParameterDeclarations><ParameterDeclaration name="is" parameterType="string" value="yes"/><ParameterDeclaration
+name="v" parameterType="double" value="36"/></ParameterDeclarations><CatalogLocations>{FOLDERS}</CatalogLocations>
+<RoadNetwork><LogicFile filepath="road.xodr"/></RoadNetwork><Entities>{CARS}</Entities>
+<Storyboard><Init><Actions><GlobalAction><EnvironmentAction>{SKY.format("e")}</EnvironmentAction></GlobalAction>
+{"".join(private(name, *told) for name, told in PLACES.items())}</Actions></Init>
+<Story name="s"><ParameterDeclarations><ParameterDeclaration name="who" parameterType="string" value="other"/>
+</ParameterDeclarations><Act name="a"><ManeuverGroup name="g" maximumExecutionCount="1"><Actors
+selectTriggeringEntities="false"><EntityRef entityRef="$who"/></Actors>{MANEUVER.format("m", MOVES)}
+<CatalogReference catalogName="Maneuver" entryName="kept"/></ManeuverGroup>
+{trigger("StartTrigger", TIME.format(0, "none", 2))}{trigger("StopTrigger", TIME.format(0, "none", 50))}
+</Act></Story>{trigger("StopTrigger", TIME.format(0, "none", 60))}</Storyboard></OpenSCENARIO>
+"""
+WEATHER = '<Environment name="fog"><Weather><Fog visualRange="99"/></Weather></Environment>'
+CATALOGS = {
+    "Vehicle": VEHICLE.format("long").replace('length="4.5"', 'length="$long"').replace(
+        "</ParameterDeclarations>", '<ParameterDeclaration name="long" parameterType="double" value="5"/>'
+        "</ParameterDeclarations>"),
+    "Environment": WEATHER,
+    "Route": ROUTE.format("there"),
+    "Maneuver": MANEUVER.format("kept", event("last", do(SPEED.format("step", "time", 0, DELTA)),
+                                            TIME.format(0, "none", 30))),
+}  # fmt: skip
+
+
+class WordsSample(NamedTuple):
+    """A file in which everything is that is carried out, and its road."""
+
+    file: Path
+    places: RoadPlaces
+
+    def text(self, root=None):
+        """The scenario that it becomes, or that a changed tree of it does."""
+        if root is not None:
+            self.file.write_text(written(root), "utf-8")
+        story = read_story(self.file, "ego")
+        places = RoadPlaces(self.places.net, self.file.parent / "road.xodr")
+        return f"{story.road}\n{scenario_text('x', self.file, story, places, 'FR')}"
+
+
+def written(element):
+    attributes = "".join(f' {name}="{value}"' for name, value in element.attributes.items())
+    return f"<{element.tag}{attributes}>{''.join(map(written, element.parts))}</{element.tag}>"
+
+
+@pytest.fixture(scope="module")
+def sample(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sample")
+    for name, entry in CATALOGS.items():
+        text = f'<OpenSCENARIO><Catalog name="{name}">{entry}</Catalog></OpenSCENARIO>'
+        (folder / name).mkdir()
+        (folder / name / "kept.xosc").write_text(text, "utf-8")
+    (folder / "road.xodr").write_text(road(section(0)), "utf-8")
+    (folder / "all.xosc").write_text(FILE, "utf-8")
+    net = road_network(folder / "road.xodr", folder / "Route")
+    return WordsSample(folder / "all.xosc", RoadPlaces(net, folder / "road.xodr"))
+
+
+def walk(element):
+    """Every element, with the row of the table that is looked into."""
+    if table().get(element.tag) is None or table()[element.tag].word == CARRIED:
+        yield element
+        for part in element.parts:
+            yield from walk(part)
+
+
+def test_every_word_of_the_table_is_refused_or_has_a_stated_difference_or_is_carried_out():
+    for tag, row in table().items():
+        for name, word, difference in row.told():
+            assert word in (CARRIED, DIFFERENT, REFUSED)
+            assert difference or word != DIFFERENT or row.word != CARRIED, f"{tag}: {name}"
+            assert not difference or word != CARRIED, f"{tag}: {name}"
+            if not name.startswith("@") and name in table() and row.word == CARRIED and word == CARRIED:
+                assert table()[name].word == CARRIED, f"{name} is carried out in {tag} and refused everywhere"
+
+
+def test_what_the_table_refuses_is_refused_by_name_and_line(sample):
+    root = read_tree(sample.file)
+    homes = dict.fromkeys(each.tag for each in walk(root))
+    tried = 0
+    for tag in homes:
+        for name, word, _ in table()[tag].told() if tag in table() else ():
+            if word != REFUSED:
+                continue
+            tried += 1
+            changed = deepcopy(root)
+            place = next(each for each in walk(changed) if each.tag == tag)
+            if name.startswith("@"):
+                place.attributes = {**place.attributes, name[1:]: "1"}
+                told = rf"all\.xosc line {place.line}: <{tag}> has {name[1:]} = '1': outside"
+            else:
+                place.parts.append(XmlElement(name, {}, place.line, place.path))
+                told = rf"all\.xosc line {place.line}: <{name}> in <{tag}>: outside"
+            with pytest.raises(ScenarioError, match=told):
+                Catalogs(changed).complete(changed, {})
+    assert tried > 50
+    parents = {part for row in table().values() for part, word in row.parts.items() if word == REFUSED}
+    for tag, row in table().items():
+        if row.word == REFUSED:
+            inside = {above for above, other in table().items() if tag in other.parts}
+            assert tag in parents or all(table()[each].word != CARRIED for each in inside), tag
+
+
+OTHER = {"true": "false", "false": "true", "greaterThan": "lessThan", "lessThan": "greaterThan", "any": "all"}
+
+
+def other(value):
+    try:
+        return f"{float(value) + 1.7}"
+    except ValueError:
+        return OTHER.get(value, f"{value}1")
+
+
+def test_what_is_carried_out_changes_the_scenario(sample):
+    root = read_tree(sample.file)
+    right = sample.text(root)
+    left = {
+        (tag, name)
+        for tag, row in table().items()
+        for name, word, _ in row.told()
+        if row.word == word == CARRIED and tag != "Catalog"
+    }
+    for number, element in enumerate(walk(root)):
+        left -= {(element.tag, part.tag) for part in element.parts}
+        for name, value in element.attributes.items():
+            if (element.tag, f"@{name}") not in left:
+                continue
+            changed = deepcopy(root)
+            place = list(walk(changed))[number]
+            place.attributes = {**place.attributes, name: other(value)}
+            try:
+                has_changed = sample.text(changed) != right
+            except ScenarioError:
+                has_changed = True
+            left -= {(element.tag, f"@{name}")} if has_changed else set()
+    assert not left, f"{sorted(left)} neither does it change anything, nor is it refused"
