@@ -99,7 +99,8 @@ def test_wheel_and_editable_install_do_without_the_links(tmp_path, project, give
     editable, wheel = sorted(checkout.glob("*.whl"))
     names = set(zipfile.ZipFile(wheel).namelist())
     for name, folder in given["package_dir"].items():
-        inside = {file.relative_to(ROOT / folder).as_posix() for file in (ROOT / folder).rglob("*.py")}
+        every = (file for kind in ("py", "toml") for file in (ROOT / folder).rglob(f"*.{kind}"))
+        inside = {file.relative_to(ROOT / folder).as_posix() for file in every}
         assert {f"{name.replace('.', '/')}/{file}" for file in inside} <= names
     zipfile.ZipFile(editable).extractall(tmp_path / "site")
     code = f"""

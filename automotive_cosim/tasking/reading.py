@@ -125,7 +125,7 @@ def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> It
             yield reader.task(entry, reader.table(table.get(DEFAULT, {}), {}))
         except UserError as error:
             raise document.refused(_found(table, task_id, (*reader.steps, *reader.below)), str(error)) from error
-        except (TypeError, ValueError, AttributeError, KeyError) as error:
+        except (TypeError, ValueError, AttributeError, KeyError, RecursionError) as error:
             raise document.refused(_found(table, task_id, reader.steps), f"cannot be read: {error}") from error
 
 
