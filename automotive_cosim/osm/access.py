@@ -116,7 +116,7 @@ def _hov(tags: Mapping[str, str], direction: str) -> str:
 def at_hours(tags: Mapping[str, str], direction: str) -> str:
     """When cars may pass along a way in a direction of ``ENDS`` other than always or never, for ``timed_access``:
     ``"no @ (Mo-Fr 07:30-08:30)"``, ``"no @ (24/7); yes @ (18:00-06:00)"``; empty if no hour changes the answer."""
-    if not has_conditions(tags):
+    if not has_conditions(tags) or tags.get("highway") == "construction":
         return ""
     usual = access(tags, direction).is_open
     found: list[tuple[bool, str]] = []

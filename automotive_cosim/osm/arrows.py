@@ -29,6 +29,9 @@ TURNS = {
 BUILT = {"t": 3, "l": 2, "L": 1, "s": 0, "R": -1, "r": -2}
 """SUMO's letters for the direction of a connection, likewise."""
 
+AHEAD = frozenset("LsR")
+"""Where a road parts and none leads aside."""
+
 MERGES = frozenset(("merge_to_left", "merge_to_right"))
 NO_ARROW = frozenset(("", "none"))
 
@@ -114,14 +117,14 @@ def _apart(pairs: Sequence[tuple[frozenset[str], Sequence[tuple[str, str]]]]) ->
 
 def _in_order(pairs: Sequence[tuple[frozenset[str], Sequence[tuple[str, str]]]], built: BuiltLanes) -> bool:
     """Whether each lane leads onto the roads that are as far to the left among all as its arrows."""
-    if not all(arrows and arrows <= TURNS.keys() for arrows, _ in pairs):
+    if not all(arrows and arrows <= TURNS.keys() - {"reverse"} for arrows, _ in pairs):
         return False
     letter_of: dict[str, str] = {}
     for lane in built:  # of roads at the same angle, the lane farther to the left leads to the one to the left
         letter_of |= {onto: letter for letter, onto in lane if letter != "t" and onto not in letter_of}
     roads = sorted(letter_of, key=lambda onto: -BUILT[letter_of[onto]])
     wanted = sorted(frozenset[str]().union(*(arrows for arrows, _ in pairs)), key=lambda arrow: -TURNS[arrow])
-    if len(wanted) != len(roads):
+    if len(wanted) != len(roads) or not AHEAD.issuperset(letter_of.values()):
         return False
     onto = dict(zip(wanted, roads, strict=True))
     return all({onto[arrow] for arrow in arrows} == {road for _, road in links} for arrows, links in pairs)

@@ -13,7 +13,7 @@ from automotive_cosim.geo.applied import limits
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.geo.rulefacts import RuleFacts
 from automotive_cosim.osm.country import assumed_limit_kmh
-from automotive_cosim.osm.lanes import built_of, lanes_of
+from automotive_cosim.osm.lanes import COUNTED, built_of
 from automotive_cosim.osm.limits import CYCLE_ZONES, WALKING_ZONES, Zone, zones_of
 from automotive_cosim.osm.oneway import directions
 from automotive_cosim.traffic.network import class_of
@@ -114,7 +114,7 @@ def _expressway(tags: Mapping[str, str], zone: str) -> bool | None:
 
 def _lanes(tags: Mapping[str, str]) -> int:
     """Number of lanes in each direction, the fewer; one where the map does not say."""
+    if not any(key in tags for key in COUNTED):
+        return 1
     may = directions(tags)
-    counts = lanes_of(tags, may)
-    built = built_of(tags, may) if counts.forward or counts.backward or "lanes" in tags else (1, 1)
-    return min((count for count, is_open in zip(built, may, strict=True) if is_open), default=1)
+    return min((count for count, is_open in zip(built_of(tags, may), may, strict=True) if is_open), default=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.osm import access, arrows, barriers, lanes, limits, oneway
@@ -51,8 +51,8 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         shut = {way.way_id for way in extract.closed}
         what = "closed to cars" if set(ways) <= shut else "open to cars" if not shut & set(ways) else "read by way"
         yield f"access that is doubtful, {what}: {tag}: {in_words('way', ways)}"
-    for what, relations in sorted(extract.told.items()):
-        yield f"{what}: {in_words('relation', relations)}"
+    for (what, kind), numbers in sorted(extract.told.items()):
+        yield f"{what}: {in_words(kind, numbers)}"
     for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in oneway.doubts(way.tags)):
         yield f"direction that is doubtful: {tag}: {in_words('way', ways)}"
     yield from _of_barriers(extract, built.cut)
@@ -73,27 +73,28 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
             yield f"{kind.replace('_', '-')} signs on no road for cars, left out: {in_words('node', nodes)}"
     if yielding := sorted(set(built.signs.yielding)):
         yield f"priority roads whose cars yield where netconvert decides so: {in_words('way', yielding)}"
-    for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in _of_priority(way.tags)):
-        yield f"priority roads, left out: {tag}: {in_words('way', ways)}"
-    for tag, ways in _by_tag((way, f"stop={way.tags['stop']}") for way in extract.ways if "stop" in way.tags):
-        yield f"stop signs on a whole way, left out: {tag}: {in_words('way', ways)}"
-    for tag, ways in _by_tag(
-        (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, roads[way.way_id].directions)
-    ):
-        yield f"{tag}: {in_words('way', ways)}"
-    for tag, ways in _by_tag(
-        (way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, roads[way.way_id].country)
-    ):
-        about = tag if tag == limits.NO_UNIT else f"{tag}, left out"
-        yield f"{about}: {in_words('way', ways)}"
-    for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in _of_lane_limits(way, roads)):
-        yield f"limits of lanes of another number, the highest if all have one: {tag}: {in_words('way', ways)}"
-    for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in unread(way.tags)):
-        yield f"tags that are not read, left out: {tag}: {in_words('way', ways)}"
-    for tag, ways in _by_tag((way, tag) for way in everywhere for tag in _of_holidays(way.tags)):
-        yield f"holidays, of which there is no calendar, taken for other days: {tag}: {in_words('way', ways)}"
-    for part, ways in _by_tag((way, part) for way in extract.ways for part in _unread(way.tags)):
-        yield f"limits under conditions that are not understood, left out: {part}: {in_words('way', ways)}"
+    unread_limits = "limits under conditions that are not understood, left out: "
+    per_way: tuple[tuple[str, Sequence[OsmWay], Callable[[OsmWay], Iterable[str]]], ...] = (
+        ("", extract.ways, lambda way: _of_right_of_way(way.tags)),
+        ("", extract.ways, lambda way: lanes.doubts(way.tags, roads[way.way_id].directions)),
+        ("", extract.ways, lambda way: _of_limits(way.tags, roads[way.way_id].country)),
+        (OTHER_LANES, extract.ways, lambda way: _of_lane_limits(way, roads)),
+        ("tags that are not read, left out: ", extract.ways, lambda way: unread(way.tags)),
+        (NO_CALENDAR, everywhere, lambda way: _of_holidays(way.tags)),
+        (unread_limits, extract.ways, lambda way: _unread(way.tags)),
+    )
+    for about, some, doubts_of in per_way:
+        for tag, ways in _by_tag((way, tag) for way in some for tag in doubts_of(way)):
+            yield f"{about}{tag}: {in_words('way', ways)}"
+
+
+OTHER_LANES = "limits of lanes of another number, the highest if all have one: "
+NO_CALENDAR = "holidays, of which there is no calendar, taken for other days: "
+
+
+def _of_limits(tags: Mapping[str, str], country: str) -> Iterator[str]:
+    for doubt in limits.doubts(tags, country):
+        yield doubt if doubt == limits.NO_UNIT else f"{doubt}, left out"
 
 
 def _of_lane_limits(way: OsmWay, roads: Mapping[int, MappedRoad]) -> Iterator[str]:
@@ -119,10 +120,12 @@ def _unread(tags: Mapping[str, str]) -> Iterator[str]:
                 yield part
 
 
-def _of_priority(tags: Mapping[str, str]) -> Iterator[str]:
+def _of_right_of_way(tags: Mapping[str, str]) -> Iterator[str]:
+    if "stop" in tags:
+        yield f"stop signs on a whole way, left out: stop={tags['stop']}"
     for key, value in tags.items():
         if key.startswith("priority_road") and value not in PRIORITY_ROAD:
-            yield f"{key}={value}"
+            yield f"priority roads, left out: {key}={value}"
 
 
 def _by_tag(found: Iterable[tuple[OsmWay, str]]) -> list[tuple[str, list[int]]]:

@@ -149,6 +149,8 @@ def _admits(tags: Mapping[str, str], side: str) -> bool:
 def _at_times(tags: Mapping[str, str], side: str) -> bool:
     """Whether cars are let in at hours, by a condition on the clock, the calendar or the weather."""
     by_rank: list[tuple[int, bool]] = []
+    if tags.get("highway") == "construction":
+        return False
     for key, value in tags.items():
         name = key.removesuffix(":conditional")
         if key != name and name in ("hov", f"hov:{side}"):
@@ -168,8 +170,9 @@ def _at_times(tags: Mapping[str, str], side: str) -> bool:
 
 _CLAUSE = re.compile(r"(-?[\w][\w;,/]*?) *@ *(\([^()]*\)|[^;()]+)")
 _CLOCK = re.compile(
-    r"\(?(?:24/7|\d\d?:\d\d|(?:Mo|Tu|We|Th|Fr|Sa|Su)\[-?[1-5]\]|(?:Mo|Tu|We|Th|Fr|Sa|Su|PH|SH|off|week|wet|snow|AND)\b"
-    r"|/\d\d?|\d\d?\b(?=[-/ ])|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-–,;: ])+\)?"
+    r"\(?(?:24/7|\d\d?:\d\d|(?:Mo|Tu|We|Th|Fr|Sa|Su)\[-?[1-5](?:,-?[1-5])*\]|/\d\d?|week \d\d?\b"
+    r"|(?:Mo|Tu|We|Th|Fr|Sa|Su|PH|SH|off|week|wet|snow|AND)\b|\d\d?\b(?=[-/ ])|(?<=-)\d\d?\b(?!:)"
+    r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-–,;: ])+\)?"
 )
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import tempfile
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Set
@@ -31,7 +30,7 @@ from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.ground import MappedArea
 from automotive_cosim.osm.oneway import directions
 from automotive_cosim.osm.overpass_json import COUNTS, OverpassJson, is_json, refuse_broken_off
-from automotive_cosim.osm.shores import cut_water
+from automotive_cosim.osm.shores import closed_water, cut_water
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
 LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
@@ -122,8 +121,8 @@ class Extract:
     """Water, green and buildings, wherever in the extract."""
     closed: tuple[OsmWay, ...] = ()
     """Roads that cars may not drive in any direction."""
-    told: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
-    """Relations that are only listed, by their kind (``TOLD_RELATIONS``)."""
+    told: Mapping[tuple[str, str], tuple[int, ...]] = field(default_factory=dict)
+    """What is only listed: how (``TOLD_RELATIONS``), and whether these are relations or ways."""
     beside: Mapping[int, Node] = field(default_factory=dict)
     """Stop and give-way signs on no road for cars."""
     other_classes: Mapping[str, int] = field(default_factory=dict)
@@ -197,7 +196,9 @@ def read(source: Path) -> Extract:
 def _read(source: Path) -> Extract:
     """Runs in a process with limits: how much an extract unpacks to, only its readers know."""
     os.environ["OSMIUM_POOL_THREADS"] = "2"  # each of as many as there are cores would reserve memory
-    ways, relations, nodes, tagged, areas, others = (_read_json if is_json(_head(source)) else _read_osm)(source)
+    ways, relations, nodes, tagged, areas, others, water = (_read_json if is_json(_head(source)) else _read_osm)(
+        source
+    )
     ways.sort(key=lambda way: way.way_id)
     complete = [piece for way in ways for piece in _known_pieces(way, nodes)]
     is_open = [any(directions(way.tags)) for way in complete]
@@ -209,10 +210,10 @@ def _read(source: Path) -> Extract:
         )
     used = {ref for way in opened for ref in way.nodes}
     cameras = {ref: node for ref, node in tagged.items() if node.tags["highway"] == CAMERA}
-    told: dict[str, tuple[int, ...]] = {}
-    for relation in sorted(relations, key=lambda relation: relation.relation_id):
-        if kind := _told_kind(relation.tags):
-            told[kind] = (*told.get(kind, ()), relation.relation_id)
+    listed = [((kind, "relation"), each.relation_id) for each in relations if (kind := _told_kind(each.tags))]
+    told: dict[tuple[str, str], tuple[int, ...]] = {}
+    for how, number in sorted([*listed, *water]):
+        told[how] = (*told.get(how, ()), number)
     return Extract(
         opened,
         {ref: node for ref, node in sorted(nodes.items()) if ref in used},
@@ -258,9 +259,12 @@ LIMITS_ENFORCED = frozenset(("maxspeed", "average_speed"))
 """Values of ``enforcement`` that are about speed (OSM wiki, "Relation:enforcement")."""
 
 _Nodes = dict[int, Node]
-_Parts = tuple[list[OsmWay], tuple[Relation, ...], _Nodes, _Nodes, tuple[MappedArea, ...], Mapping[str, int]]
-"""Ways open to cars, relations, the nodes of both, those with a ``TAGGED`` thing, the ground, and how many ways of
-other classes there are."""
+_Listed = list[tuple[tuple[str, str], int]]
+_Parts = tuple[
+    list[OsmWay], tuple[Relation, ...], _Nodes, _Nodes, tuple[MappedArea, ...], Mapping[str, int], _Listed
+]
+"""Ways open to cars, relations, the nodes of both, those with a ``TAGGED`` thing, the ground, how many ways of
+other classes there are, and the water that is not whole."""
 
 
 def _read_osm(source: Path) -> _Parts:
@@ -270,7 +274,7 @@ def _read_osm(source: Path) -> _Parts:
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-map-") as scratch:
         try:
             file = source
-            if version in OLD_VERSIONS:
+            if kind != "pbf" and version in OLD_VERSIONS:
                 file, kind = _as_new(source, Path(scratch) / "new.osm"), "osm"
             if deleted:
                 return _read_sorted(file, kind, deleted, Path(scratch))
@@ -284,16 +288,23 @@ def _read_osm(source: Path) -> _Parts:
             raise ImportMapError(_explain(source, str(error))) from error
 
 
-OLD_VERSIONS = ("1", "1.0")
-"""What tools write (OSMnx before 1.3) that mean the present version of the format, 0.6."""
+OLD_VERSIONS = ("1", "1.0", "")
+"""What tools write (OSMnx before 1.3) or leave out that mean the present version of the format, 0.6."""
+
+_ROOT = re.compile(rb"<(osm|osmChange)\b")
+_VERSION = re.compile(rb"""\sversion=["'][^"']*["']""")
 
 
 def _as_new(source: Path, target: Path) -> Path:
-    """Writes a file unpacked, and with the present version."""
+    """Writes a file unpacked, with the present version, without what Overpass adds (``out geom``, ``center``)."""
     with opened(source) as old, drafted(target) as new:
-        head = old.read(4096)
-        new.write(re.sub(rb"""(<osm\b[^>]*?version=["'])1(\.0)?(?=["'])""", rb"\g<1>0.6", head, count=1))
-        shutil.copyfileobj(old, new)
+        text = old.read()
+        start = _ROOT.search(text)
+        at, end = (start.end(), text.index(b">", start.end())) if start else (0, 0)
+        root = b' version="0.6"' + _VERSION.sub(b"", text[at:end])
+        body = re.sub(rb"<(bounds|center)\b[^>]*>(\s*</(bounds|center)>)?", b"", text[end:])
+        body = re.sub(rb"<member\b([^>]*[^/>])>.*?</member>", rb"<member\1/>", body, flags=re.DOTALL)
+        new.write(text[:at] + root + body)
     return target
 
 
@@ -327,8 +338,9 @@ def _read_file(file: Any) -> _Parts:
     ways, relations, others = _read_ways(file, carried)
     nodes = carried | _read_nodes(file, _wanted(ways, relations))
     lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
-    areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
-    return ways, relations, nodes, _read_tagged(file), areas, others
+    water: _Listed = []
+    areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1], water))
+    return ways, relations, nodes, _read_tagged(file), areas, others, water
 
 
 def _wanted(ways: Iterable[OsmWay], relations: Iterable[Relation]) -> set[int]:
@@ -340,7 +352,7 @@ def _wanted(ways: Iterable[OsmWay], relations: Iterable[Relation]) -> set[int]:
 def _read_json(source: Path) -> _Parts:
     read = OverpassJson(source)
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
-    others = Counter(tags["highway"] for _, tags, _ in read.ways() if tags.get("highway") in MAYBE_ROADS)
+    others = Counter(left_out for _, tags, _ in read.ways() if (left_out := _left_out(tags)))
     relations = tuple(filter(_is_kept, (Relation(*relation) for relation in read.relations())))
     wanted = _wanted(ways, relations)
     outlines = [(kind, refs) for _, tags, refs in read.ways() if (kind := _ground_of(tags, refs)) is not None]
@@ -358,7 +370,9 @@ def _read_json(source: Path) -> _Parts:
     areas = (
         MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
     )
-    return ways, relations, dict(sorted(nodes.items())), tagged, tuple(areas), others
+    in_json = ("water in JSON, left out", "relation")
+    water = [(in_json, ref) for ref, tags, _ in read.relations() if ground.kind_of(tags) is GroundKind.WATER]
+    return ways, relations, dict(sorted(nodes.items())), tagged, tuple(areas), others, water
 
 
 def _ground_of(tags: Mapping[str, str], refs: tuple[int, ...]) -> GroundKind | None:
@@ -399,12 +413,19 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
         the version of the format.
     """
     deleted: set[tuple[str, int]] = set()
-    version = ""
+    version, within = "0.6", ""
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
-        nonlocal version
-        if name == "osm":
+        nonlocal version, within
+        if name in ("tag", "nd"):  # most of the elements
+            version = "" if name == "nd" and within == "relation" else version
+            return
+        if name in ("osm", "osmChange"):
             version = attributes.get("version", "")
+        elif name in ("node", "way", "relation"):
+            within = name
+        elif name == "center" or (name == "bounds" and within):
+            version = ""
         elif name == "count":
             raise ImportMapError(f"{source} {COUNTS}")
         elif name == "remark":
@@ -471,10 +492,10 @@ def _read_ways(file: Any, carried: dict[int, Node]) -> tuple[list[OsmWay], tuple
         if item.is_way():
             if _is_road(tags):
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
-                if item.nodes and item.nodes[0].location.valid():
-                    carried |= {node.ref: Node(Position(node.lon, node.lat), {}) for node in item.nodes}
-            elif tags.get("highway") in MAYBE_ROADS:
-                others[tags["highway"]] += 1
+                known = [node for node in item.nodes if node.location.valid()]
+                carried |= {node.ref: Node(Position(node.lon, node.lat), {}) for node in known}
+            elif left_out := _left_out(tags):
+                others[left_out] += 1
         else:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
             relations.append(Relation(item.id, tags, members))
@@ -514,6 +535,13 @@ def _is_road(tags: Mapping[str, str]) -> bool:
     ) != "yes"
 
 
+def _left_out(tags: Mapping[str, str]) -> str:
+    """The class of a way on which cars may drive, but which is not read; several, as tools write them, count."""
+    value = tags.get("highway", "")
+    words = set(re.findall(r"\w+", value.lower())) if value not in ROAD_CLASSES and not _is_road(tags) else ()
+    return value if value in MAYBE_ROADS or ROAD_CLASSES.intersection(words) else ""
+
+
 def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:
     osmium = _osmium()
     nodes: dict[int, Node] = {}
@@ -536,46 +564,69 @@ def _read_tagged(file: Any) -> dict[int, Node]:
     }
 
 
-def _read_ground(file: Any, roads: list[list[Position]]) -> Iterator[MappedArea]:
+def _read_ground(file: Any, roads: list[list[Position]], told: _Listed) -> Iterator[MappedArea]:
     """Areas of closed ways and of multipolygons; of those that the extract cuts, only water (``shores``)."""
     osmium = _osmium()
-    cut: set[int] = set()
+    whole: set[tuple[str, int]] = set()
     tagged = osmium.filter.KeyFilter(*ground.KEYS)
     areas = osmium.FileProcessor(file).with_areas(tagged).with_filter(tagged)
     for area in areas.with_filter(osmium.filter.EntityFilter(osmium.osm.AREA)):
         kind = ground.kind_of({tag.k: tag.v for tag in area.tags})
         if kind is None:
             continue
-        if kind is GroundKind.WATER and area.num_rings()[0] == 0:
-            cut.add(area.orig_id())
+        if area.num_rings()[0]:
+            whole.add(("way" if area.from_way() else "relation", area.orig_id()))
         for outer in area.outer_rings():
             yield MappedArea.of(kind, _line(outer), map(_line, area.inner_rings(outer)))
-    for shores in _read_shores(file, cut):
-        for shape in cut_water(shores, roads):
-            yield MappedArea(GroundKind.WATER, shape)
-
-
-def _read_shores(file: Any, cut: set[int]) -> Iterator[list[list[tuple[float, float]]]]:
-    """The known pieces of the shores of each of those multipolygons, and of the sea."""
-    osmium = _osmium()
-    waters = [
-        {member.ref for member in relation.members if member.type == "w"}
-        for relation in osmium.FileProcessor(file, osmium.osm.RELATION)
-        if relation.id in cut
-    ]
-    coast = osmium.FileProcessor(file, osmium.osm.WAY).with_filter(
-        osmium.filter.TagFilter(("natural", "coastline"))
-    )
-    waters.append({way.id for way in coast})
-    if not any(waters):
-        return
-    lines: dict[int, list[tuple[float, float]]] = {}
-    wanted, only_ways = set().union(*waters), osmium.filter.EntityFilter(osmium.osm.WAY)
-    for way in osmium.FileProcessor(file, osmium.osm.NODE | osmium.osm.WAY).with_locations().with_filter(only_ways):
-        if way.id in wanted:
-            lines[way.id] = _line(node for node in way.nodes if node.location.valid())
+    waters = [water for water in _waters(osmium, file) if (water.kind, water.number) not in whole]
+    lines = _lines(osmium, file, {way for water in waters for way in (*water.outer, *water.inner)})
     for water in waters:
-        yield [lines[way] for way in sorted(water) if way in lines]
+        outer, inner = ([lines[way] for way in ways if way in lines] for ways in (water.outer, water.inner))
+        shapes = cut_water([*outer, *inner], roads)
+        if water.number and not shapes:
+            shapes = closed_water(outer, inner, roads)
+            done = "closed by straight lines" if shapes else "left out"
+            told.append(((f"water that the extract cuts, {done}", water.kind), water.number))
+        yield from (MappedArea(GroundKind.WATER, shape) for shape in shapes)
+
+
+class _Water(NamedTuple):
+    """A water whose outline may not be whole; the coast has no number."""
+
+    kind: str
+    number: int
+    outer: tuple[int, ...]
+    inner: tuple[int, ...] = ()
+
+
+def _waters(osmium: Any, file: Any) -> Iterator[_Water]:
+    """Closed ways and multipolygons of water, and all coastlines."""
+    values = [(key, value) for key, words in ground.TAGS[GroundKind.WATER].items() for value in words]
+    tagged = osmium.filter.TagFilter(*values, ("natural", "coastline"))
+    coast: list[int] = []
+    for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(tagged):
+        tags = {tag.k: tag.v for tag in item.tags}
+        if tags.get("natural") == "coastline" and item.is_way():
+            coast.append(item.id)
+        elif ground.kind_of(tags) is not GroundKind.WATER:
+            continue
+        elif item.is_relation() and tags.get("type") in ("multipolygon", "boundary"):
+            ways = sorted((member.role == "inner", member.ref) for member in item.members if member.type == "w")
+            of_role = (tuple(ref for is_inner, ref in ways if is_inner is role) for role in (False, True))
+            yield _Water("relation", item.id, *of_role)
+        elif item.is_way() and len(item.nodes) > 3 and item.nodes[0].ref == item.nodes[-1].ref:
+            yield _Water("way", item.id, (item.id,))
+    if coast:
+        yield _Water("way", 0, tuple(coast))
+
+
+def _lines(osmium: Any, file: Any, wanted: set[int]) -> dict[int, list[tuple[float, float]]]:
+    """What is known of these ways."""
+    if not wanted:
+        return {}
+    only_ways = osmium.filter.EntityFilter(osmium.osm.WAY)
+    ways = osmium.FileProcessor(file, osmium.osm.NODE | osmium.osm.WAY).with_locations().with_filter(only_ways)
+    return {way.id: _line(node for node in way.nodes if node.location.valid()) for way in ways if way.id in wanted}
 
 
 def _line(nodes: Iterable[Any]) -> list[tuple[float, float]]:

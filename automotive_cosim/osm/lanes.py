@@ -127,6 +127,12 @@ def doubts(tags: Mapping[str, str], may: Directions) -> Iterator[str]:
         yield f"{', '.join(f'{key}={value}' for key, value in said.items())}, which do not add up"
     if may.is_two_way and total == 1:
         yield SHARED
+    if tags.get("oneway") in ("-1", "reverse"):
+        yield from (
+            f"{key}={value}, taken from the left of the traffic, which drives against the way's nodes"
+            for key, value in tags.items()
+            if key.endswith(":lanes")
+        )
     if any(key.startswith("turn") for key in tags):
         yield from (f"{arrow}, left out" for arrow in arrows.doubts(tags, may, built_of(tags, may)))
 

@@ -255,7 +255,7 @@ def _sign(value: str) -> str | None:
 
 def _in_unit(number: str, unit: str) -> str:
     if unit == "knots":
-        return f"{float(number) * KMH_PER_KNOT:.1f}"
+        return f"{float(number) * KMH_PER_KNOT:g}"
     return f"{number} mph" if unit == "mph" else number
 
 

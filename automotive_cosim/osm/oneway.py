@@ -124,7 +124,8 @@ def doubts(tags: Mapping[str, str]) -> Iterator[str]:
         value = tags.get(key, "")
         if value and (value.strip() not in VALUES or value in DOUBTED):
             yield f"{key}={value}"
-        if tags.get(f"{key}:conditional") and not any(at_hours(tags, end) for end in access.ENDS):
+        timed = tags.get(f"{key}:conditional") and any(at_hours(tags, end) for end in access.ENDS)
+        if tags.get(f"{key}:conditional") and (not timed or any(access.at_hours(tags, end) for end in access.ENDS)):
             yield f"{key}:conditional={tags[f'{key}:conditional']}"
     if not any(tags.get(key) for key in KEYS) and _signed(tags) is BOTH:
         yield from (

@@ -1,15 +1,28 @@
 """Rivers, lakes and the sea where an extract cuts them: their shores cross it and no outline closes.
 
 The shores part the extract's box into faces, which are water and land in turn. The roads tell which is which: they
-are on land, but for bridges.
+are on land, but for bridges. What parts nothing, as a lake of which a piece of the shore is missing, is closed by
+straight lines.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from shapely import LineString, MultiLineString, Polygon, box, get_num_geometries, polygonize, union_all
+from shapely import (
+    LineString,
+    MultiLineString,
+    Polygon,
+    box,
+    get_num_geometries,
+    get_parts,
+    line_merge,
+    make_valid,
+    polygonize,
+    union_all,
+)
 from shapely.geometry.base import BaseGeometry
 
 BRIDGES_SHARE = 0.1
@@ -59,3 +72,25 @@ def _water(shores: BaseGeometry, roads: MultiLineString, frame: Polygon) -> list
     roads_on = [roads.intersection(union_all(side)).length for side in sides]
     wet = int(np.argmin(roads_on))
     return sides[wet] if roads_on[wet] <= BRIDGES_SHARE * sum(roads_on) else []
+
+
+def closed_water(outer: Iterable[Shore], inner: Iterable[Shore], roads: Sequence[Shore]) -> list[Polygon]:
+    """The water within shores of which pieces are missing: each stretch that is known is closed by a straight line;
+    nothing where more road would lie on it than a bridge.
+
+    Args:
+        outer: the pieces that are known of its shores.
+        inner: those of its islands.
+        roads: the roads of the map.
+    """
+    ways = MultiLineString([LineString(line) for line in roads])
+    islands = union_all(_filled(inner))
+    filled = [shape for shape in _filled(outer) if ways.intersection(shape).length <= math.sqrt(shape.area)]
+    parts = [get_parts(shape.difference(islands)) for shape in filled]
+    return [part for each in parts for part in each if isinstance(part, Polygon)]
+
+
+def _filled(shores: Iterable[Shore]) -> list[BaseGeometry]:
+    lines = line_merge(MultiLineString([LineString(line) for line in shores if len(line) > 1]))
+    stretches = [part.coords for part in get_parts(lines) if isinstance(part, LineString)]
+    return [make_valid(Polygon(stretch)) for stretch in stretches if len(stretch) > 2]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 
 _END = "(:forward|:backward)?"
 _CAR = "(motorcar|motor_vehicle|vehicle|access)"
@@ -55,12 +56,14 @@ _CLASS = re.compile("[nlmt][1-7]")
 def unread(tags: Mapping[str, str]) -> Iterator[str]:
     """The tags of a road that nobody reads, ``"maxspeed:variable=yes"``."""
     for key, value in tags.items():
-        says_no = value in ("no", "none", "0", "") and not _WHO.match(key)
-        if FAMILIES.match(key) and not READ.fullmatch(key) and not says_no and _is_ours(key):
+        if _is_unread(key) and (value not in ("no", "none", "0", "") or _WHO.match(key)):
             yield f"{key}={value}"
 
 
-def _is_ours(key: str) -> bool:
+@lru_cache(4096)
+def _is_unread(key: str) -> bool:
+    if not FAMILIES.match(key) or READ.fullmatch(key):
+        return False
     words = key.lower().split(":")
     if {"psv", "bus", "taxi"} & set(words) and "lanes" in words:
         return not REMARKS & set(words)  # a bus lane at certain hours is the cars' at others

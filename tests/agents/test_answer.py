@@ -62,9 +62,13 @@ THOUGHTS = [
     *((f"<{name}>", f"</{name}>") for name in ("think", "thinking", "THINK", "thought", "reasoning", "seed:think")),
     *(
         (f"<{name}>", f"</{name}>")
-        for name in ("longcat_think", "mm:think", "reflection", "scratchpad", "analysis")
+        for name in ("longcat_think", "mm:think", "reflection", "scratchpad", "analysis", "antThinking", "cot")
     ),
     ("<think>\n<think>", "</think>"),
+    ("&lt;think&gt;", "&lt;/think&gt;"),
+    (f"<think_never_used_{'5' * 32}>", f"</think_never_used_{'5' * 32}>"),
+    ("<|inner_prefix|>", "<|inner_suffix|>"),
+    ('<details type="reasoning" done="true">\n<summary>Thought for 2 s</summary>\n', "\n</details>"),
     ("[THINK]", "[/THINK]"),
     ("<|begin_of_thought|>", "<|end_of_thought|>"),
     ("<|START_THINKING|>", "<|END_THINKING|>"),

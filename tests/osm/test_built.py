@@ -633,6 +633,7 @@ LISTED = (
     *({key: "yes"} for key in (
         "toll", "ice_road", "4wd_only", "abandoned", "proposed", "seasonal", "stop", "give_way"
     )),
+    {"oneway": "yes", "oneway:conditional": "no @ (22:00-06:00)", "access:conditional": "no @ (07:00-09:00)"},
     {"toll:lanes": "yes|no"}, {"hov": "lane"}, {"hov:lanes": "lane|"}, {"taxi:lanes": "|designated"},
     {"bus:lanes:conditional": "|designated @ (07:00-09:00)"}, {"priority": "forward"}, {"priority_road": "maybe"},
     {"maxwidth": "1.8"}, {"maxheight": "1.7 m"}, {"junction": "jughandle"}, {"dual_carriageway": "yes"},

@@ -32,7 +32,7 @@ CLASSES = (
     "living_street",
 )
 SPEEDS = ("50", "30 mph", "30mph", "30 MPH", "none", "walk", "70;90", "0", "7.5", "500", "1", "fast", "FR:urban",
-          "DE:zone30", "GB:20", "UK:nsl_dual", "XX:30", "de:rural")  # fmt: skip
+          "DE:zone30", "GB:20", "UK:nsl_dual", "XX:30", "de:rural", "20 knots")  # fmt: skip
 POOLS = (
     ([f"{key}{end}" for key in KEYS for end in ("", ":forward", ":backward")],
      [*sorted(OPEN | CLOSED), "No", "x", "no;destination", "psv;delivery", ""]),
@@ -44,6 +44,9 @@ POOLS = (
      ["designated", "no|no", "yes|no", "|psv"]),
     (["hov", "hov:forward", "hov:lanes", "hov:lanes:backward"],
      ["designated", "yes", "no", "2+", "3", "lane", "designated|no", "designated|designated"]),
+    ([f"{key}{end}:conditional" for key in KEYS for end in ("", ":forward", ":backward")],
+     ["no @ (Mo-Fr 07:00-09:00)", "yes @ (22:00-06:00)", "no @ (Mo[1,3])", "yes @ (week 40)",
+      "no @ (weight>3.5)", "yes @ (sunset-sunrise)", "destination @ (Dec 24-26,Jan 1); no @ (snow)"]),
     (["hov:conditional"], ["designated @ (Mo-Fr 06:00-09:00)", "no @ (Sa,Su)"]),
     (["construction"], ["minor"]),
     (["junction"], ["roundabout", "circular", "yes"]),
@@ -107,6 +110,7 @@ MISREADINGS: dict[str, tuple[object, str, object]] = {
     "a bollard is passed": (barriers, "PASSABLE", barriers.PASSABLE | {"bollard"}),
     "a gate stops": (barriers, "GATES", frozenset[str]()),
     "a mile is a kilometre": (limits, "KMH_PER_MPH", 1.0),
+    "a knot is a kilometre": (limits, "KMH_PER_KNOT", 1.0),
     "the limit of all before that of cars": (limits, "CAR_KEYS", limits.CAR_KEYS[::-1]),
     "every road can be without a limit": (limits, "may_be_unlimited", lambda tags, country="": True),
     "a zone has no number": (limits, "_ZONE_NUMBER", re.compile("x")),

@@ -51,12 +51,16 @@ def _as_json(path: Path, *, with_positions: bool) -> bytes:
     return json.dumps({"version": 0.6, "generator": "Overpass API", "elements": elements}).encode()
 
 
-@pytest.mark.parametrize("version", ["1", "1.0"])
+@pytest.mark.parametrize("version", ["1", "1.0", ""])
 @pytest.mark.parametrize("ending", ["", ".gz", ".bz2"])
 def test_files_that_say_version_1_are_read(
     version: str, ending: str, formats: dict[str, Path], tmp_path: Path
 ) -> None:
-    data = formats[""].read_bytes().replace(b'<osm version="0.6"', f'<osm version="{version}"'.encode())
+    data = (
+        formats[""]
+        .read_bytes()
+        .replace(b'<osm version="0.6"', f'<osm version="{version}"'.encode() if version else b"<osm")
+    )
     file = tmp_path / f"map.osm{ending}"
     file.write_bytes({"": bytes, ".gz": gzip.compress, ".bz2": bz2.compress}[ending](data))
     assert extract.read(file) == extract.read(formats[""])
@@ -65,8 +69,25 @@ def test_files_that_say_version_1_are_read(
 def test_ways_may_carry_their_nodes(formats: dict[str, Path], tmp_path: Path) -> None:
     file = tmp_path / "geom.osm"
     inner = b'<nd ref="1" lat="48.3" lon="1.6"/><nd ref="2" lat="48.31" lon="1.6"/>'
-    file.write_bytes(OSM % (b'<way id="5">' + inner + b'<tag k="highway" v="primary"/></way>'))
-    assert [node.position for node in extract.read(file).nodes.values()] == [(1.6, 48.3), (1.6, 48.31)]
+    bounds = b'<bounds minlat="48.3" minlon="1.6" maxlat="48.31" maxlon="1.6"/>'
+    beyond, tag = b'<nd ref="3"/>', b'<tag k="highway" v="primary"/></way>'
+    member = b'<member type="way" ref="5" role="from"><nd lat="48.3" lon="1.6"/><nd/></member>'
+    turn = b'<relation id="6">%s%s<tag k="type" v="restriction"/></relation>' % (bounds, member)
+    for content in (inner, inner + beyond, bounds + inner):
+        for more in (b"", turn):
+            file.write_bytes(OSM % (b'<way id="5">' + content + tag + more))
+            found = extract.read(file)
+            assert [node.position for node in found.nodes.values()] == [(1.6, 48.3), (1.6, 48.31)]
+            assert len(found.restrictions) == bool(more)
+
+
+def test_a_class_as_a_tool_writes_several_is_counted(tmp_path: Path) -> None:
+    values = ("['residential', 'tertiary']", "residential;service", "service", "footway", "Residential")
+    file, way = tmp_path / "classes.osm", '<way id="{}"><nd ref="1"/><nd ref="2"/><tag k="highway" v="{}"/></way>'
+    nodes = '<node id="1" lat="48.3" lon="1.6"/><node id="2" lat="48.31" lon="1.6"/>'
+    ways = (way.format(*each) for each in enumerate(("primary", *values), start=1))
+    file.write_bytes(OSM % (nodes + "".join(ways)).encode())
+    assert dict(extract.read(file).other_classes) == {value: 1 for value in values if value != "footway"}
 
 
 @pytest.mark.parametrize("with_positions", [False, True])

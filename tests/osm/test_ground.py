@@ -53,7 +53,9 @@ def test_a_relation_is_an_area_with_its_islands_and_a_cut_one_is_left_out(
     relation = f'<relation id="7" version="1">{members}{tags}</relation>{cut}'
     path = tmp_path / "with.osm"
     path.write_text(text.replace("</osm>", f"{relation}</osm>"), encoding="utf-8")
-    before, after = (extract.read(file).ground for file in (formats[""], path))
+    whole, found = (extract.read(file) for file in (formats[""], path))
+    before, after = whole.ground, found.ground
+    assert found.told == {("water that the extract cuts, left out", "relation"): (8,)}
     assert len(after) == len(before) + 1
     (lake,) = (area.shape for area in after if area.shape.interiors)
     assert len(lake.interiors) == 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from shapely import Point, union_all
 
-from automotive_cosim.osm.shores import cut_water
+from automotive_cosim.osm.shores import closed_water, cut_water
 
 Line = list[tuple[float, float]]
 
@@ -59,3 +59,33 @@ def test_streets_on_both_sides_leave_open_which_is_water() -> None:
 def test_roads_may_reach_farther_than_the_shores_are_known() -> None:
     far = [*ROADS, *ROADS, [(-3.0, 0.0), (0.0, 0.0)]]
     assert wet([SOUTH, NORTH], 0.1, 0.6, far)
+
+
+LAKE = [(0.2, 0.1), (0.8, 0.1), (0.8, 0.3), (0.2, 0.3), (0.2, 0.1)]
+"""Where no street is, but for one."""
+STREET: list[Line] = [[(0.5, 0.0), (0.5, 0.4)]]
+
+
+@pytest.mark.parametrize(
+    ("known", "inside", "beyond"),
+    [
+        ([LAKE], (0.7, 0.2), (0.9, 0.2)),
+        ([LAKE[:3]], (0.7, 0.2), (0.3, 0.25)),
+        ([LAKE[:2], LAKE[2:]], (0.7, 0.2), (0.9, 0.2)),
+        ([LAKE[3:], LAKE[:2]], (0.3, 0.15), (0.7, 0.25)),
+        ([LAKE[:2]], None, (0.7, 0.1)),
+        ([], None, (0.7, 0.2)),
+    ],
+)
+def test_what_is_known_of_a_lake_is_closed_by_straight_lines(
+    known: list[Line], inside: tuple[float, float] | None, beyond: tuple[float, float]
+) -> None:
+    water = union_all(closed_water(known, [], STREET))
+    assert inside is None or water.contains(Point(inside))
+    assert not water.contains(Point(beyond))
+
+
+def test_an_island_of_a_cut_lake_is_land_and_no_town_is_a_lake() -> None:
+    island = [(0.6, 0.12), (0.65, 0.12), (0.65, 0.15), (0.6, 0.12)]
+    assert not union_all(closed_water([LAKE[:4]], [island], STREET)).contains(Point(0.64, 0.125))
+    assert closed_water([LAKE], [], [[(0.1 * n, 0.0), (0.1 * n, 0.4)] for n in range(11)]) == []
