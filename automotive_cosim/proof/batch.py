@@ -18,7 +18,6 @@ from automotive_cosim.run.plan import choose
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import Store
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.folder import digest
 
 PIECE = 12
 """Number of tasks of one simulation that a worker takes; each is also tried for residue of the one before."""
@@ -41,7 +40,7 @@ class ProofPlan:
             "tasks": list(self.tasks),
             "seeds": list(self.seeds),
             "gates": [gate for gate in GATES if gate in self.gates],
-            "task_files": digest(),
+            "task_files": CATALOGUE.digest(),
         }
 
     def check(self) -> None:
