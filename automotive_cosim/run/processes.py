@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 PRELOADED = ["automotive_cosim.agents", "pydantic"]
 """What workers have from the process that they are forked from: most of what they import, but nothing that depends
-on the environment, as the catalogue does (``tasks.folder``)."""
+on the environment, as the catalogue does (``tasking.own_files``)."""
 
 ORPHANS_S = 3.0
 """Wall time in which the agents' processes of a killed worker have to end by themselves."""

@@ -39,7 +39,7 @@ from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.spaces import GOAL_BYTES
 from automotive_cosim.run.drive import JudgedDrive
-from automotive_cosim.tasks.spoken import FOREIGN, phrasings
+from automotive_cosim.tasking.reading import FOREIGN, shared
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import limit, moment, vehicle
@@ -505,7 +505,7 @@ def test_driver_and_car_speak_the_language(simulations: Simulations, language: L
 
 def test_the_answer_is_the_one_that_drivers_give_in_tasks() -> None:
     for language in FOREIGN:
-        assert phrasings(language)["any"]["lines"][ANSWERS[Language.ENGLISH]] == ANSWERS[language]
+        assert shared().lines[language][ANSWERS[Language.ENGLISH]] == ANSWERS[language]
 
 
 @pytest.mark.slow

@@ -51,7 +51,7 @@ from automotive_cosim.tasking.triggers import (
     Trigger,
 )
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
+from tests.written import COMFORT, ON_THE_WAY, asked
 
 SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
 GRID = Start("grid", "avenue")
@@ -359,7 +359,8 @@ def test_a_pair_with_one_right_act_is_seen(ground):
 
 
 def test_a_pair_that_can_always_be_declined_is_seen(ground):
-    idle = decline(GRID, ON_THE_WAY, COMFORT, Basis.WISH, reasons=(Reason.SAFETY,))
+    declares, reasons = GoalStatus.INFEASIBLE, frozenset({Reason.SAFETY})
+    idle = Half(GRID, ON_THE_WAY, NothingDone(), (), COMFORT, Basis.WISH, declares=declares, reasons=reasons)
     pair = replace(SOUND, first=idle, second=idle, difference="none")
     grounds = {half: ground(pair, half) for half in pair.halves}
     assert f"{GoalStatus.INFEASIBLE} wins both halves" in list(gates.trivial(grounds))
