@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import TriggerNotReachedError
-from automotive_cosim.proof.ground import Ground
+from automotive_cosim.proof.hand_over import Ground
 from automotive_cosim.run.difficulty import RECORD, Difficulties, Difficulty, Outcomes, fingerprint, read, write
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import choose

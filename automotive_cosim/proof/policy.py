@@ -9,7 +9,7 @@ from functools import cache
 from importlib.resources import files
 
 from automotive_cosim.contracts.given import Interface
-from automotive_cosim.proof.ground import Ground, Played, finish
+from automotive_cosim.proof.hand_over import Ground, Played, finish
 from automotive_cosim.tasking import reading
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.parameters import bind

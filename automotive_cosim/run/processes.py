@@ -14,9 +14,9 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic
 
-from automotive_cosim.agents.leftovers import children, end_all, strangers, take_orphans
+from automotive_cosim.agents.cleanup import children, end_all, strangers, take_orphans
+from automotive_cosim.run.budget import Meter, MeterHandle, Spent, served
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
-from automotive_cosim.run.meter import Meter, MeterHandle, Spent, served
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage, telling
 

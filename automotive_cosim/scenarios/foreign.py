@@ -16,8 +16,9 @@ from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, WeatherAt
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.scenarios.relocation import zone_of
 from automotive_cosim.scenarios.routes import drawn_trips
+from automotive_cosim.traffic.additional import read_mapped
+from automotive_cosim.traffic.file_check import vet
 from automotive_cosim.traffic.georeference import middle
-from automotive_cosim.traffic.ground import read_mapped
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import (
     INPUTS,
@@ -30,7 +31,6 @@ from automotive_cosim.traffic.options import (
     stated_and_set,
 )
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
-from automotive_cosim.traffic.vetting import vet
 
 DAY = datetime(2026, 6, 16)
 """A Tuesday in June; SUMO's files have no date."""

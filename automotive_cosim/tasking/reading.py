@@ -25,9 +25,9 @@ from importlib.resources import files
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.occupants import company
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.errors import UnknownNameError, UserError

@@ -21,11 +21,11 @@ from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, Trip
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.formats.xml import read_root, scan
 from automotive_cosim.traffic import random_traffic
+from automotive_cosim.traffic.file_check import OTHER_EGO, copy_vetted, refuse_variables
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_network
 from automotive_cosim.traffic.redraw import redraw
 from automotive_cosim.traffic.sumo import EGO
-from automotive_cosim.traffic.vetting import OTHER_EGO, copy_vetted, refuse_variables
 from automotive_cosim.traffic.vocabulary import IGNORED, MESOSCOPIC, PARALLEL, REFUSED, TAKEN, WINDOW
 
 INPUTS = ("net-file", "route-files", "additional-files", "weight-files")

@@ -13,13 +13,13 @@ from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, RoadIncident, RoadSh
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.formats.incidents import Incident
 from automotive_cosim.formats.scenario import Scenario, Trip
+from automotive_cosim.traffic.additional import placed, read_mapped
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion, Free
 from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FASTEST_MPS, FOR_GOOD_S, Driver
-from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.incidents import Incidents
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes

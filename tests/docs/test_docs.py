@@ -384,7 +384,7 @@ def test_pages_count_screens_and_functions_as_they_are():
 
 def test_the_reference_of_observations_has_every_field_reading_action_and_number():
     from automotive_cosim.contracts import Observation, VehicleState
-    from automotive_cosim.drives.wakes import WAKES
+    from automotive_cosim.drives.changes import WAKES
     from automotive_cosim.envs import flat, flat_drive
 
     text = (TOP / "docs/reference/observations.md").read_text(encoding="utf-8")

@@ -22,6 +22,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.alarm import Alarm, noticed
+from automotive_cosim.drives.changes import LONGEST_S, WAKES
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.driver import driver_line
 from automotive_cosim.drives.families import FAMILIES
@@ -31,7 +32,6 @@ from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
-from automotive_cosim.drives.wakes import LONGEST_S, WAKES
 from automotive_cosim.drives.watchers import READS, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.loop import Actor, play

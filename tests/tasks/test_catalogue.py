@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.cockpit.aboard import Kind, Seat
+from automotive_cosim.cockpit.occupants import Kind, Seat
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.instance import draw, instances

@@ -11,8 +11,8 @@ from string import Formatter
 import pytest
 
 from automotive_cosim.agents.oracle import Oracle
-from automotive_cosim.cockpit.aboard import Seat
 from automotive_cosim.cockpit.language import Language, word
+from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode

@@ -11,9 +11,9 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts import GroundArea, GroundKind
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios.opening import network_of
-from automotive_cosim.traffic import ground
+from automotive_cosim.traffic import additional
+from automotive_cosim.traffic.additional import read_mapped
 from automotive_cosim.traffic.georeference import GeoReference
-from automotive_cosim.traffic.ground import read_mapped
 from automotive_cosim.traffic.options import Configuration
 
 NET = scenarios.load("grid").folder / "grid.net.xml"
@@ -95,7 +95,7 @@ def test_a_broken_polygon_is_refused_with_its_line(read: Read, words: str) -> No
 
 
 def test_of_too_many_areas_the_largest_are_kept(read: Read, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ground, "AREAS_LIMIT", 2)
+    monkeypatch.setattr(additional, "AREAS_LIMIT", 2)
     sides = (3, 9, 1, 5)
     found = read(*(f'type="park" fill="1" shape="0,0 {side},0 {side},{side}"' for side in sides))
     assert [area.outline_m[1][0] for area in found] == [9, 5]

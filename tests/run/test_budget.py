@@ -19,8 +19,8 @@ from automotive_cosim.errors import BudgetSpentError, InfrastructureError, UserE
 from automotive_cosim.models import ChatMessage, ModelReply
 from automotive_cosim.models.turns import LocalTurns
 from automotive_cosim.run.batch import SPENT, run_plan, spent_before
+from automotive_cosim.run.budget import Meter, MeterClient, Metered, Spent, served
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.meter import Meter, MeterClient, Metered, Spent, served
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady

@@ -12,8 +12,8 @@ from pyproj import Proj
 from shapely import Point, Polygon, union_all
 
 from automotive_cosim.contracts import GroundKind, RoadNetwork
-from automotive_cosim.osm import extract, ground
-from automotive_cosim.osm.ground import COARSE, MappedArea, draw, kind_of
+from automotive_cosim.osm import extract, land_cover
+from automotive_cosim.osm.land_cover import COARSE, MappedArea, draw, kind_of
 
 UTM = "+proj=utm +zone=31 +ellps=WGS84"
 EAST_M, NORTH_M = Proj(UTM)(1.60, 48.30)
@@ -114,7 +114,7 @@ def test_a_crossed_outline_and_no_projection_do_no_harm() -> None:
 
 
 def test_of_too_many_areas_the_largest_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ground, "COARSE", {kind: replace(each, most=2) for kind, each in COARSE.items()})
+    monkeypatch.setattr(land_cover, "COARSE", {kind: replace(each, most=2) for kind, each in COARSE.items()})
     found = draw([mapped(GroundKind.WATER, square(400.0 * at, 0, 100.0 + at)) for at in range(4)], NETWORK)
     assert (len(found.areas), found.too_many) == (2, 2)
     assert min(Polygon(area.outline_m).area for area in found.areas) > 101.5**2
@@ -123,6 +123,6 @@ def test_of_too_many_areas_the_largest_are_kept(monkeypatch: pytest.MonkeyPatch)
 def test_the_file_is_the_same_each_time(tmp_path: Path) -> None:
     areas = draw([mapped(GroundKind.WATER, square(0, 0, 900))], NETWORK).areas
     for name in ("a", "b"):
-        ground.write(areas, tmp_path / name)
+        land_cover.write(areas, tmp_path / name)
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
     assert 'type="water"' in gzip.decompress((tmp_path / "a").read_bytes()).decode()

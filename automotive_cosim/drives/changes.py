@@ -12,9 +12,9 @@ from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from math import ceil, floor
 
-from automotive_cosim.cockpit.aboard import Seat, seated_by
 from automotive_cosim.cockpit.notices import LOW_KPA
-from automotive_cosim.cockpit.reach import HORIZON_M, RADAR_M
+from automotive_cosim.cockpit.occupants import Seat, seated_by
+from automotive_cosim.cockpit.sensor_range import HORIZON_M, RADAR_M
 from automotive_cosim.cockpit.signals import (
     BODY,
     CABIN,

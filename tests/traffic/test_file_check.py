@@ -17,9 +17,9 @@ from automotive_cosim.formats import bounds, files
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.traffic import sumo_programs, vocabulary
 from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.file_check import copy_vetted
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.options import INPUTS, Setup, command_line, copied, read_configuration, run_options
-from automotive_cosim.traffic.vetting import copy_vetted
 
 NET = (scenarios.load("grid").folder / "grid.net.xml").read_text()
 LIGHT = re.search(r'<tlLogic id="([^"]+)".*?</tlLogic>', NET, re.DOTALL)

@@ -7,7 +7,7 @@ import pytest
 from automotive_cosim.errors import ModelError
 from automotive_cosim.models import ModelReply
 from automotive_cosim.models.base import estimated_tokens
-from automotive_cosim.run import fit
+from automotive_cosim.run import model_check
 from automotive_cosim.run.forecast import longest_question, pictures_of
 from automotive_cosim.run.plan import make_plan
 
@@ -33,7 +33,7 @@ class Model:
 
 def test_a_model_that_takes_all_is_asked_once():
     model = Model()
-    assert fit.misfit(model, 2000, PICTURE) == ""
+    assert model_check.misfit(model, 2000, PICTURE) == ""
     assert model.asked == 1
 
 
@@ -43,7 +43,7 @@ def test_a_model_that_takes_all_is_asked_once():
     (Model(1000, pictures=False), "--prompt short"),
 ])  # fmt: skip
 def test_what_it_does_not_take_is_said_with_the_option_that_helps(model, helps):
-    said = fit.misfit(model, 2000, PICTURE)
+    said = model_check.misfit(model, 2000, PICTURE)
     assert helps in said
     assert "nowhere/m" in said
     assert "status 400" in said
@@ -51,7 +51,7 @@ def test_what_it_does_not_take_is_said_with_the_option_that_helps(model, helps):
 
 def test_one_that_never_answers_is_no_misfit():
     with pytest.raises(ModelError):
-        fit.misfit(Model(0), 2000, None)
+        model_check.misfit(Model(0), 2000, None)
 
 
 class Calls(Model):
@@ -74,19 +74,19 @@ class Calls(Model):
 @pytest.mark.parametrize("text", ["OK", "<think>Hm.", '{"say": "", "calls": [{"name": "wait", "arguments": {}}]}'])
 def test_one_that_calls_is_asked_a_second_question_with_a_result_in_it(text):
     model = Calls(text)
-    assert fit.misfit(model, 2000, PICTURE, calls=True) == ""
+    assert model_check.misfit(model, 2000, PICTURE, calls=True) == ""
     assert model.roles == [["system", "user"], ["system", "user", "assistant", "tool"]]
-    said = fit.misfit(Calls(text, takes=False), 2000, PICTURE, calls=True)
+    said = model_check.misfit(Calls(text, takes=False), 2000, PICTURE, calls=True)
     assert re.search("no question with the result of a call .*Unexpected role.*t3a", said)
 
 
 def test_each_model_is_asked_once_for_all_trials_alike_and_the_stand_in_never(monkeypatch):
     asked = []
-    monkeypatch.setattr(fit, "misfit", lambda model, *_, calls: asked.append((model.name, calls)) or "")
+    monkeypatch.setattr(model_check, "misfit", lambda model, *_, calls: asked.append((model.name, calls)) or "")
     monkeypatch.setenv("NOWHERE_API_KEY", "any")
     monkeypatch.setenv("NOWHERE_BASE_URL", "http://127.0.0.1:9/v1")
     values = {"agents": ["t3a", "caller"], "models": ["rules", "nowhere/m"], "tasks": ["hvac_fan_max"]}
-    assert list(fit.misfits(make_plan(values | {"scenarios": ["grid"], "seeds": [0, 1]}).jobs())) == []
+    assert list(model_check.misfits(make_plan(values | {"scenarios": ["grid"], "seeds": [0, 1]}).jobs())) == []
     assert sorted(asked) == [("nowhere/m", False), ("nowhere/m", True)]
 
 

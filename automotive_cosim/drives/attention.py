@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import AlertKind
+from automotive_cosim.drives.changes import CLOSE_S, DUE_S, OVER_S
 from automotive_cosim.drives.margins import BORDER_S, LAMP_S, gaze_s, hold_s, margin_kmh
 from automotive_cosim.drives.reading import Gathered
-from automotive_cosim.drives.wakes import CLOSE_S, DUE_S, OVER_S
 
 LOOK_S = 2
 """How often the watcher looks again while something nears a threshold."""

@@ -1,8 +1,8 @@
 """How often the situation of each half comes about, measured on seeds that no task was written with.
 
-    python -m automotive_cosim.proof.reach --first-seed 100 --seeds 20
+    python -m automotive_cosim.proof.frequency --first-seed 100 --seeds 20
 
-drives up to every hand-over and renews ``reach.json`` beside this file, for ``automotive-cosim tasks show``. Run
+drives up to every hand-over and renews ``frequency.json`` beside this file, for ``automotive-cosim tasks show``. Run
 again, it measures only what is missing and halves whose situation has changed since.
 """
 
@@ -29,7 +29,7 @@ from automotive_cosim.tasking.task import Half
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
-RECORD = Path(__file__).with_name("reach.json")
+RECORD = Path(__file__).with_name("frequency.json")
 WARM = 2
 """Simulations kept warm: halves are tried scenario by scenario."""
 

@@ -18,7 +18,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.posted import (
+from automotive_cosim.traffic.posted_limits import (
     in_force,
     is_open,
     is_understood,

@@ -9,7 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.cockpit.aboard import (
+from automotive_cosim.cockpit.cabin import CABIN_LOSS, STEP_S, Air, Cabin, CabinStart, Controls, parked_c
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.forecast import cabin_c
+from automotive_cosim.cockpit.occupants import (
     SIGNALS,
     USUAL_KG,
     Kind,
@@ -20,9 +23,6 @@ from automotive_cosim.cockpit.aboard import (
     seated,
     take_seats,
 )
-from automotive_cosim.cockpit.cabin import CABIN_LOSS, STEP_S, Air, Cabin, CabinStart, Controls, parked_c
-from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.forecast import cabin_c
 from automotive_cosim.cockpit.signals import HVAC, MOTION, OUTSIDE, SEAT, Signals
 from automotive_cosim.cockpit.vehicle import WINDOWS, Vehicle
 from automotive_cosim.contracts import FeedbackCode, Surroundings

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from automotive_cosim.cockpit.aboard import SIGNALS, seated
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.notices import NOTICED
+from automotive_cosim.cockpit.occupants import SIGNALS, seated
 from automotive_cosim.cockpit.signals import BODY, CALL, GLASS, HVAC, LIGHTS, Signals
 from automotive_cosim.traffic.ego import BUCKLES, CLEARS_VIEW, WAKES_UP
 
