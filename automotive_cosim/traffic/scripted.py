@@ -20,6 +20,8 @@ FOR_ITS_ROUTE = 1
 """SUMO's lane change mode: as commanded, and where its route asks for another lane."""
 STANDS_MPS = 0.1
 """Who is slower stands."""
+EQUAL = 0.01
+"""Values that differ by no more are equal."""
 NEAREST_S = 0.5
 """Seconds are counted from the ego's departure to the nearest whole one of the simulation."""
 
@@ -56,6 +58,8 @@ class _Watch:
         value = now_s if condition.what == "time" else self._value(car) if car else None
         if value is None:
             return False
+        if condition.equal:
+            return abs(value - condition.value) <= EQUAL
         return value < condition.value if condition.below else value > condition.value
 
     def _value(self, car: str) -> float | None:
