@@ -56,8 +56,8 @@ CEILINGS = {
     "studies": (12611, 113, 92),
     "tasking": (5544, 124, 0),
     "tasks": (15, 0, 0),
-    "tests": (60972, 122, 0),
-    "traffic": (11211, 76, 0),
+    "tests": (60993, 122, 0),
+    "traffic": (11214, 76, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""

@@ -114,7 +114,7 @@ def road_network(source: Path, folder: Path) -> Any:
             for name in ("convBoundary", "origBoundary"):
                 x, y, x_most, y_most = location.attrib[name].split(",")
                 location.set(name, f"{x},{-float(y_most):.2f},{x_most},{-float(y):.2f}")
-        ET.ElementTree(root).write(folder / NET, encoding="UTF-8", xml_declaration=True)
+        write_whole(folder / NET, ET.tostring(root, encoding="UTF-8", xml_declaration=True))
     return sumolib.net.readNet(str(folder / NET), withInternal=False)
 
 
@@ -133,7 +133,7 @@ def _for_netconvert(source: Path, ours: Path) -> bool:
         root = ET.fromstring(text)
         mirror(root)
         text = ET.tostring(root)
-    ours.write_bytes(text)
+    write_whole(ours, text)
     return keeps_left
 
 
