@@ -2,8 +2,8 @@
 
     python -m automotive_cosim.proof.frequency --first-seed 100 --seeds 20
 
-drives up to every hand-over and renews ``frequency.json`` beside this file, for ``automotive-cosim tasks show``. Run
-again, it measures only what is missing and halves whose situation has changed since.
+drives up to every hand-over and renews ``frequency.json`` beside this file, for ``automotive-cosim tasks show``.
+Run again, it measures only what is missing and halves whose situation has changed since.
 """
 
 from __future__ import annotations
