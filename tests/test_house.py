@@ -28,7 +28,7 @@ OTHERS = "beside them"
 CEILINGS = {
     "agents": (6389, 65, 0),
     "benchmarks": (2068, 16, 0),
-    "cli": (4336, 14, 230),
+    "cli": (4338, 14, 230),
     "cockpit": (19333, 185, 0),
     "contracts": (1404, 60, 0),
     "cosim": (494, 3, 0),
@@ -36,8 +36,8 @@ CEILINGS = {
     "drives": (7279, 81, 0),
     "envs": (1301, 9, 0),
     "episode": (1733, 19, 0),
-    "exchange": (3393, 12, 0),
-    "formats": (2660, 37, 0),
+    "exchange": (3392, 12, 0),
+    "formats": (2658, 37, 0),
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
@@ -56,8 +56,8 @@ CEILINGS = {
     "studies": (12611, 113, 92),
     "tasking": (5544, 124, 0),
     "tasks": (15, 0, 0),
-    "tests": (60986, 122, 0),
-    "traffic": (11272, 76, 0),
+    "tests": (61105, 122, 0),
+    "traffic": (11270, 76, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
