@@ -211,12 +211,13 @@ class StagedVehicle(StagedIncident):
             if self._kept is not None and self._kept[0] > now_s:
                 sumo.vehicle.setSpeed(car, sumo.speed(car))
                 self._kept = None
-        if action.meets_edge or action.gap_m is not None or action.gap_s is not None:
+        adapts = action.meets_edge or action.gap_m is not None or action.gap_s is not None
+        if self._adapts is not None and (adapts or action.speed_kmh is not None or action.speed_share is not None):
+            self._adapts.ends_s, self._adapts = now_s, None
+        if adapts:
             task.ends_s, self._adapts, self._kept = math.inf, task, None
             return
         if action.speed_kmh is not None or action.speed_share is not None:
-            if self._adapts is not None:
-                self._adapts.ends_s, self._adapts = now_s, None
             mps, from_mps = self._mps(action), sumo.speed(car)
             over_s = action.over_s
             if action.rate:
