@@ -32,6 +32,9 @@ MARGIN_DEG, MARGIN_M = 0.1, 10_000.0
 TURNED = "+axis=neu"
 """PROJ's word for northings before eastings."""
 
+OTHER_AXES = re.compile(r"\+axis=(?!en)")
+"""PROJ's words for all but eastings before northings."""
+
 HELMERT = re.compile(r"step (inv )?proj=helmert (.*?)(?= step|$)")
 """The change of datum in a pipeline of PROJ's."""
 
@@ -45,7 +48,7 @@ def in_full(location: Mapping[str, str]) -> str:
     """The ``projParameter`` of a ``<location>`` as PROJ's string, with its change of datum; "!" if there is none.
 
     For codes that count northings first, netconvert 1.28 writes northings as x, which makes the network its own
-    mirror image: the string then says so (``TURNED``), and ``doubt`` tells.
+    mirror image: the string then says so (``TURNED``), as PROJ's does of southings, and ``doubt`` tells.
 
     Raises:
         ValueError: an attribute contains something other than numbers.
@@ -61,6 +64,8 @@ def in_full(location: Mapping[str, str]) -> str:
         return "!"
     with warnings.catch_warnings(action="ignore"):  # that names are lost
         text = crs.to_proj4().replace("+type=crs", "").strip()
+    if OTHER_AXES.search(text):
+        return text
     east_m, north_m = _middle_m(location)
     turned = crs.axis_info[0].direction == "north" and not _lies(crs, location, east_m, north_m)
     if turned:
@@ -189,10 +194,11 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
     """
     if network.projection is None:
         return "has no projection"
-    if TURNED in network.projection:
+    if OTHER_AXES.search(network.projection):
         return (
-            f"has its axes the other way round (it is made with {location.get('projParameter')}, which counts "
-            "northings first, and netconvert took them for x: left is right in it; build it again with --proj.utm)"
+            f"has its axes the other way round (it is made with {location.get('projParameter')}, which does not "
+            "count eastings first, and netconvert took what it counts for x: north is not up in it, or left is "
+            "right; build it again with --proj.utm)"
         )
     try:
         lon_deg, lat_deg = middle(network)

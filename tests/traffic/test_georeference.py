@@ -92,7 +92,14 @@ CODES = [  # code, and where it is used; from 28992 on, registries know several 
 ]
 
 
-@pytest.mark.parametrize(("code", "north_first"), [("EPSG:31468", True), ("EPSG:2180", True), ("EPSG:5514", False)])
+@pytest.mark.parametrize(
+    ("code", "north_first"),
+    [
+        *((code, True) for code in ("EPSG:31468", "EPSG:2180", "EPSG:3035", "EPSG:5513", "EPSG:2065")),
+        ("EPSG:5514", False),
+        ("EPSG:25833", False),
+    ],
+)
 def test_a_network_with_its_axes_the_other_way_round_is_told(
     code: str, north_first: bool, tmp_path: Path, sumo: None
 ) -> None:
