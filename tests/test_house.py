@@ -36,8 +36,8 @@ CEILINGS = {
     "drives": (7279, 81, 0),
     "envs": (1301, 9, 0),
     "episode": (1733, 19, 0),
-    "exchange": (3282, 12, 0),
-    "formats": (2639, 37, 0),
+    "exchange": (3392, 12, 0),
+    "formats": (2658, 37, 0),
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
@@ -56,8 +56,8 @@ CEILINGS = {
     "studies": (12626, 113, 92),
     "tasking": (5544, 124, 0),
     "tasks": (15, 0, 0),
-    "tests": (61072, 122, 0),
-    "traffic": (11253, 76, 0),
+    "tests": (61190, 122, 0),
+    "traffic": (11310, 76, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
