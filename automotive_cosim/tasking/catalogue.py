@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.xml import without_collection
 from automotive_cosim.tasking.instance import drawn, instances
 from automotive_cosim.tasking.own_files import VARIABLE, line_of, own_files, shipped_files, shipped_tasks, tasks_of
-from automotive_cosim.tasking.parameters import FromCockpit, names
+from automotive_cosim.tasking.parameters import FromCockpit, named_in, names
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Differs, Task
 
@@ -97,9 +98,10 @@ def _enter(known: dict[str, Task], tasks: Iterable[Task]) -> None:
         _check_choices(task)
         if len(set(task.templates)) < 4:
             raise ValueError(f"task {task.id!r} has {len(set(task.templates))} phrasings; it requires four")
-        spoken = tuple(speech.templates for speech in task.spoken.values())
+        said = chain(task.templates, *(speech.templates for speech in task.spoken.values()))
         try:
-            lacking = sorted(names((task.templates, task.first, task.second, spoken)) - task.parameters.keys())
+            asked = names((task.first, task.second)).union(*map(named_in, said))
+            lacking = sorted(asked - task.parameters.keys())
         except ValueError as error:
             raise ValueError(f"task {task.id!r} {error}") from error
         for speech in task.spoken.values():

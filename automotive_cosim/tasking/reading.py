@@ -135,7 +135,9 @@ def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> It
         except UserError as error:
             raise document.refused(_found(table, task_id, (*reader.steps, *reader.below)), str(error)) from error
         except (TypeError, ValueError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
-            why = "nested too deeply, or like itself" if isinstance(error, RecursionError) else error
+            why = "nested too deeply, or like itself" if isinstance(error, RecursionError) else str(error)
+            if isinstance(error, TypeError | AttributeError):
+                why = f"another kind of value is expected there ({why})"
             raise document.refused(_found(table, task_id, reader.steps), f"cannot be read: {why}") from error
 
 
@@ -352,7 +354,7 @@ class _Reader:
             holes = told.count("{}")
             if holes > MOST_HOLES or said.count("{}") > holes or re.search(r"\{[^}]|[^{]\}", said):
                 raise UserError(
-                    f"{told:.60} is {said:.60}; both have {{}} at most {MOST_HOLES} times, and no other braces"
+                    f"says {said[:60]!r} for {told[:60]!r}; expected {{}} up to {MOST_HOLES} times in both"
                 )
         return Lexicon.of({**self._shared.lines[language], **{told: _joined(said) for told, said in own.items()}})
 

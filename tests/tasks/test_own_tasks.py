@@ -154,6 +154,7 @@ SPACES = " " * 9000
         ('"Warm {seat} seat.', '"Warm {seat.__class__} seat.', "'seat.__class__' in braces"),
         ('"Warm {seat} seat.', '"Warm {seat[0]} seat.', "'seat[0]' in braces"),
         ('"Warm {seat} seat.', '"Warm {seat:>99} seat.', "'seat' in braces, and more"),
+        ('"Warm {seat} seat.', '"Warm seat} seat.', "Single '}'"),
         ('"Warm {seat} seat.', '"Warm {seat!r} seat.', "'seat' in braces, and more"),
         ("tap phone.quiet", "wait 99999999999", "from 1 to 10,000 s"),
         ("tap phone.quiet", "wait 9000; wait 9000", "more than 1,000 moves"),
@@ -162,8 +163,12 @@ SPACES = " " * 9000
         ("tap phone.quiet", "tap " + SPACES * 2, "longer than 10,000 characters"),
         ("difference = ", "only_english = 'x'\nde = { templates = ['a'] }\ndifference = ", "1 in German"),
         ("difference = ", "de = { words = {} }\ndifference = ", "lacks 'templates'"),
-        ("difference = ", "de = { templates = ['a'], lines = { a = '{:>99}' } }\ndifference = ", "other braces"),
-        ("difference = ", "de = { templates = ['a'], lines = { '{}{}{}{}' = 'a' } }\ndifference = ", "3 times"),
+        ("difference = ", "de = { templates = ['a'], lines = { a = '{:>99}' } }\ndifference = ", "in both"),
+        (
+            "difference = ",
+            "de = { templates = ['a'], lines = { '{}{}{}{}' = 'a' } }\ndifference = ",
+            "up to 3 times",
+        ),
         ("own_pair", "'../own_pair'", "up to 100 letters"),
         ("own_pair", '"own\\u001b[31m\\npair"', "up to 100 letters"),
         ("own_pair", "o" * 101, "up to 100 letters"),
@@ -181,6 +186,7 @@ SPACES = " " * 9000
         ("parameters.level", "parameters.some = 3\nparameters.level", "it must be a list"),
         ("[default]", "names = 3\n[default]", "it must be a table"),
         ("slips = ", "slips = 3 # ", "it must be a list"),
+        ("goal = ", "goal = { param = [] } # ", "another kind of value"),
         ("goal = ", "goal = 3 # ", "it must be a text"),
     ]
 )
