@@ -105,19 +105,20 @@ def named_in(text: str) -> Iterator[str]:
     """The names in braces in a text.
 
     Raises:
-        ValueError: what stands in braces is more than a name: an attribute, an entry, a width.
+        ValueError: what stands in braces is more than a name, and how a number is written: an attribute, a width.
     """
     for _, name, width, conversion in _PARSE(text):
         if name is not None:
-            if width or conversion or not _NAME.fullmatch(name):
-                raise ValueError(
-                    f"has {name[:60]!r} in braces{', and more' if width or conversion else ''}; expected a name"
-                )
+            if conversion or not _NAME.fullmatch(name) or not _FORM.fullmatch(width or ""):
+                more = ", and more" if width or conversion else ""
+                raise ValueError(f"has {name[:60]!r} in braces{more}; expected a name, or a number as {{name:.1f}}")
             yield name
 
 
 _PARSE = Formatter().parse
 _NAME = re.compile(r"\w{1,100}")
+_FORM = re.compile(r"|\.[0-3]f|g|d")
+"""How a number may be written. A width would fill memory."""
 
 
 def names(value: object) -> frozenset[str]:
