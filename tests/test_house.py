@@ -53,11 +53,11 @@ CEILINGS = {
     "schemas": (84, 0, 0),
     "serve": (2603, 22, 0),
     "service": (428, 6, 0),
-    "studies": (12611, 113, 92),
+    "studies": (12626, 113, 92),
     "tasking": (5544, 124, 0),
     "tasks": (15, 0, 0),
-    "tests": (60987, 122, 0),
-    "traffic": (11214, 76, 0),
+    "tests": (61072, 122, 0),
+    "traffic": (11253, 76, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
