@@ -20,10 +20,20 @@ import pytest
 
 from tests.report.test_stopped import write
 
+COUNTS = Path(__file__).parents[2] / "docs/examples/grid_counts.csv"
+GRID = ("--scenario", "grid", "--warm-up", "60", "--out", "OUT")
+SPACE = """
+[factors]
+task = ["hvac_fan_max"]
+scenario = ["grid"]
+latency_s = { least = 0, most = 9, nominal = 0 }
+
+[failure]
+"""
 OF_A_START = {"wall_seconds", "attempts", "failed_attempts"}
 """What rows say of a start and not of what was run."""
 KILLS = 20
-"""Of a command."""
+"""Of each command, of which there are ten."""
 FULL = """
 mount -t tmpfs -o size=1g none "$ROOM" && cp -a "$GIVEN/." "$ROOM" || exit 99
 mount -o remount,ro "$ROOM"; "$@" >1.out 2>1.err; echo $? >1.code
@@ -69,7 +79,31 @@ class Command:
 EVAL = ("eval", "--scenarios", "grid", "--tasks", "hvac_fan_max", "--most-steps", "4", "--out", "OUT")
 COMMANDS = {
     "eval": Command((*EVAL, "--agents", "oracle,no-op", "--pictures", "none"), rows()),
+    "eval of drives, kept": Command(
+        ("eval", "--drives", "grid_june", "--agents", "rule-perfect", "--minutes", "2", "--pictures", "all",
+         "--out", "OUT"), rows(),
+    ),
+    "search": Command(
+        ("search", "--space", "space.toml", "--agent", "oracle", "--budget", "3", "--out", "OUT"),
+        rows("tried.jsonl"),
+    ),
+    "study reroute": Command(("study", "reroute", *GRID, "--seeds", "0,1", "--departures", "0"), rows()),
+    "study congestion": Command(
+        ("study", "congestion", *GRID, "--seeds", "0,1", "--minutes", "5", "--measure", "closure edge=c2c3"), rows()
+    ),
+    "study days": Command(
+        ("study", "days", *GRID, "--seeds", "0", "--shares", "0,1", "--days", "2", "--minutes", "5"), rows()
+    ),
     "report": Command(("report", "OUT"), files("tables/*.csv"), writes_into="GIVEN"),
+    "publish bundle": Command(("publish", "bundle", "GIVEN", "--out", "OUT"), Path.read_bytes, name="x.bundle"),
+    "calibrate": Command(
+        ("scenarios", "calibrate", "grid", "--counts", str(COUNTS), "--rounds", "1", "--out", "OUT"),
+        files("calibrat*.[rj]*"),
+    ),
+    "calibrate, then its page": Command(
+        ("scenarios", "calibrate", "grid", "--counts", str(COUNTS), "--rounds", "1", "--out", "OUT", "--seed", "1"),
+        files("tables/*.csv"),
+    ),
 }  # fmt: skip
 
 
@@ -157,6 +191,8 @@ def without_room(disturbed: Disturbed, expected: tuple[int, Any], place: Path) -
     for folder in (room, kept, log):
         folder.mkdir()
     words = [word.replace(str(given), str(room)) for word in disturbed.words(given / disturbed.command.name)]
+    if "space.toml" in words:
+        shutil.copy(place / "space.toml", log)
     named = {"ROOM": str(room), "KEPT": str(kept), "GIVEN": str(given)}
     tried = subprocess.run(
         ["unshare", "-rm", "sh", "-c", FULL, "sh", *words], cwd=log, env=os.environ | named, check=False,
@@ -179,6 +215,7 @@ def without_room(disturbed: Disturbed, expected: tuple[int, Any], place: Path) -
 def place(tmp_path_factory: pytest.TempPathFactory, sumo: None) -> Path:
     """A folder with what the commands are given."""
     place = tmp_path_factory.mktemp("durable")
+    (place / "space.toml").write_text(SPACE)
     (place / "clock").mkdir()
     (place / "clock" / "sitecustomize.py").write_text(CLOCK)
     given = [*EVAL[:-1], "given", "--agents", "oracle,no-op"]
@@ -189,7 +226,7 @@ def place(tmp_path_factory: pytest.TempPathFactory, sumo: None) -> Path:
 
 @pytest.mark.proof
 @pytest.mark.timeout(1800)
-@pytest.mark.parametrize("name", ["eval"])
+@pytest.mark.parametrize("name", COMMANDS)
 def test_a_disturbed_command_goes_on_to_the_same_result(name, place, tmp_path, program, session, until):
     disturbed = Disturbed(COMMANDS[name], place, tmp_path, program)
     began_s, out = time.monotonic(), disturbed.fresh()
