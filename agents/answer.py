@@ -40,7 +40,8 @@ WIDE_COMMA = re.compile(r"""(?<=["'\u201d\u2019\del}\]])\s*\uff0c\s*(?=["'\u201c
 FORM = {"situation", "plan", "action"}
 """Keys of an answer that is one object."""
 LABELS = re.compile(
-    r"^[\s*_#>-]*(situation|reason|thought|plan|action|lesson)[*_]*\s*[:\uff1a][*_]*", re.IGNORECASE | re.M
+    r"^(?:[^\S\n]|[*_#>-])*(situation|reason|thought|plan|action|lesson)[*_]*\s*[:\uff1a][*_]*",
+    re.IGNORECASE | re.MULTILINE,
 )
 
 
@@ -69,7 +70,9 @@ def read(text: str, *, is_cut: bool = False) -> ParsedAnswer:
     text = ended(text)
     if (told := _object(text)) is not None:
         return ParsedAnswer(str(told["situation"]), str(told["plan"]), parse(told["action"]), strict=True)
-    strict = re.search(r"^Action: *(\{.*\})\s*\Z", text, re.DOTALL | re.MULTILINE)
+    # Where no brace ends the text, each label would be tried up to there.
+    is_closed = text.rstrip().endswith("}")
+    strict = re.search(r"^Action: *(\{.*\})\s*\Z", text, re.DOTALL | re.MULTILINE) if is_closed else None
     if strict is not None:
         try:
             return _answer(text, json.loads(strict[1]), strict=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from automotive_cosim.agents import answer, brief, prompt
+from automotive_cosim.agents import answer, prompt, prompt_parts
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.lines import one_line
@@ -170,7 +170,9 @@ class ModelAgent:
         history = self._history[len(self._history) - last :] if last < len(self._history) else self._history
         text = prompt.turn(self._profile, seen, history, plan, self._recalled, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, text)
-        action = schema_of(self._profile.actions, None if seen.elements is None else brief.indices(seen.elements))
+        action = schema_of(
+            self._profile.actions, None if seen.elements is None else prompt_parts.indices(seen.elements)
+        )
         reply, asked = self._asking.ask(text, pictures, answer.schema(action))
         try:
             understood = answer.read(reply.text, is_cut=reply.is_cut)

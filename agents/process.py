@@ -34,7 +34,7 @@ from typing import NoReturn
 import numpy as np
 
 from automotive_cosim.agents import Agent, AgentSettings, Thinker, make_agent
-from automotive_cosim.agents.leftovers import POLL_S, children, end_all, remove, take_orphans
+from automotive_cosim.agents.cleanup import POLL_S, children, end_all, remove, take_orphans
 from automotive_cosim.agents.wire import GoneError, Wire
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json, Observation

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from string import Template
 
-from automotive_cosim.agents import brief
+from automotive_cosim.agents import prompt_parts
 from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.settings import AgentProfile
 from automotive_cosim.cockpit.actions import FIELDS, to_json
@@ -80,7 +80,7 @@ def turn(
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
             "feedback": _timed_result(observation),
-            "elements": brief.told(observation.elements or ()) if is_listed else None,
+            "elements": prompt_parts.told(observation.elements or ()) if is_listed else None,
             "pictures": (PICTURES if is_listed else PICTURE) if pictures else None,
             "seen": "the screen, its elements" if is_listed else "the screen",
             "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
@@ -117,7 +117,7 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
         {
             "goal": driver_words(observation) if is_spoken else None,
             "feedback": _timed_result(observation),
-            "elements": brief.told(observation.elements or ()) if is_listed else None,
+            "elements": prompt_parts.told(observation.elements or ()) if is_listed else None,
             "pictures": PICTURE if pictures else None,
             "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
@@ -169,7 +169,7 @@ def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
     """The actions, and the functions that can be called; in a watch, a wait ends when something changes and nothing
     ends the watch."""
     kinds = profile.actions - (UNASKED if on_watch else frozenset())
-    text = brief.actions(kinds, by_point=by_point, by_name=profile.length is PromptLength.SHORT)
+    text = prompt_parts.actions(kinds, by_point=by_point, by_name=profile.length is PromptLength.SHORT)
     for action, about in ON_DRIVES.items() if on_watch else ():
         text = text.replace(FIELDS[action].about, about)
     if profile.functions:
@@ -201,7 +201,7 @@ def look_back(
         "plan": one_line(plan) or None,
         "feedback": _timed_result(after),
         "pictures": BEFORE_AND_AFTER.get(pictures),
-        "changes": None if lists[0] is None or lists[1] is None else brief.changes(lists[0], lists[1]),
+        "changes": None if lists[0] is None or lists[1] is None else prompt_parts.changes(lists[0], lists[1]),
     }
     return fill("lesson", slots)
 
@@ -249,7 +249,7 @@ def _context(profile: AgentProfile, observation: Observation) -> str:
     """The geo-context; short only for who can ask for the rest, and not in a watch, where anything can matter."""
     text = observation.context or "unknown"
     if ActionType.QUERY in profile.actions and not observation.on_watch:
-        return brief.context(text, driver_words(observation))
+        return prompt_parts.context(text, driver_words(observation))
     return _lines(text)
 
 
@@ -278,7 +278,7 @@ def listing(index: int, element: Element) -> Json:
 
 
 def _vehicle(vehicle: VehicleState | None) -> str:
-    return "unknown" if vehicle is None else brief.vehicle(vehicle)
+    return "unknown" if vehicle is None else prompt_parts.vehicle(vehicle)
 
 
 def _connectivity(observation: Observation) -> str:

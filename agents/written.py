@@ -2,8 +2,8 @@
 
 json       {"name": ..., "arguments": ...}, one or a list, within a mark or alone: Hermes, Qwen, Llama, Mistral,
            Granite, Phi, Cohere, Hunyuan, Nemotron, xLAM
-headed     a mark, the name, and the arguments as JSON: Llama, Mistral, DeepSeek, Kimi, gpt-oss
-tagged     a tag for the function and one for each parameter: Qwen3-Coder, Seed-OSS, MiniMax, GLM, DeepSeek, Step
+headed     a mark, the name, and the arguments as JSON: Llama, Mistral, DeepSeek, Kimi, gpt-oss, Qwen-Agent, ReAct
+tagged     a tag for the function and one for each parameter: Qwen3-Coder, Seed-OSS, MiniMax, GLM, DeepSeek, Grok
 pythonic   name(argument=value), in a list, a mark or a block: Llama, Olmo, LFM2, Gemini
 braced     call:name{argument:value}: Gemma
 
@@ -32,13 +32,15 @@ _MARKED = (
 )
 _HEADED = re.compile(
     r"(?:<function=|\[TOOL_CALLS\]\s*|<\|tool_call_begin\|>\s*|\bto=|<\uff5ctool\u2581call\u2581begin\uff5c>"
-    rf"(?:function<\uff5ctool\u2581sep\uff5c>)?|^(?=[\w.-]+\[ARGS\])){_NAME}"
-    r"(?:>|:\d+|\s|\[CALL_ID\][\w-]+|\[ARGS\]|<\uff5ctool\u2581sep\uff5c>|<\|\w+\|>|commentary|```|json)*(?=\{)",
+    r"(?:function<\uff5ctool\u2581sep\uff5c>)?|^(?=[\w.-]+\[ARGS\])|\u273fFUNCTION\u273f:\s*"
+    rf"|^Action:[ \t]*(?=[\w.-]+\s*\n\s*Action Input:)){_NAME}"
+    r"(?:>|:\d+|\s|\[CALL_ID\][\w-]+|\[ARGS\]|<\uff5ctool\u2581sep\uff5c>|<\|\w+\|>|commentary|```|json|code"
+    r"|\u273fARGS\u273f:|Action Input:)*(?=\{)",
     re.MULTILINE,
 )
 _TAGGED = re.compile(
-    rf"<(?:\w+:)?(?:function|invoke)(?:=|\s+name=)[\"']?{_NAME}[\"']?\s*>(?P<body>.*?)"
-    r"(?:</(?:\w+:)?(?:function|invoke)>|</(?:\w+:)?tool_call>)"
+    rf"<(?:\w+:)?(?:function|invoke|function_call)(?:=|\s+name=)[\"']?{_NAME}[\"']?\s*>(?P<body>.*?)"
+    r"(?:</(?:\w+:)?(?:function|invoke|function_call)>|</(?:\w+:)?tool_call>)"
     r"|<tool_call>\s*(?P<glm>[A-Za-z_][\w.-]*)\s*(?P<pairs>(?:<arg_key>.*?</arg_value>\s*)*)</tool_call>",
     re.DOTALL,
 )
@@ -51,8 +53,8 @@ _PARAMETER = re.compile(
 _BEGUN = re.compile(rf"(?:{_MARKED}\s*)+(?=[{{\[])", re.MULTILINE)
 _BLOCK = re.compile(r"```(?:\w*)\s*\n?\s*((?=[{\[a-z]).*?)\s*```\s*\Z|^((?=[{\[]).*)\Z", re.DOTALL | re.MULTILINE)
 _PYTHONIC = re.compile(
-    r"(?:<\|python_start\|>|<\|tool_call_start\|>|<function_calls>|```tool_code\s)(?P<lines>.*?)"
-    r"(?:<\|python_end\|>|<\|tool_call_end\|>|</function_calls>|```)",
+    r"(?:<\|python_start\|>|<\|tool_call_start\|>|<function_calls>|<tool_call>|```tool_code\s)(?P<lines>.*?)"
+    r"(?:<\|python_end\|>|<\|tool_call_end\|>|</function_calls>|</tool_call>|```)",
     re.DOTALL,
 )
 _BRACED = re.compile(rf"\bcall:{_NAME}(?P<braced>\{{.*?\}})(?=\s*<)", re.DOTALL)

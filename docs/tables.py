@@ -17,10 +17,10 @@ from typer.testing import CliRunner
 from automotive_cosim import schemas
 from automotive_cosim.agents import FORMATS
 from automotive_cosim.cli.main import app
+from automotive_cosim.drives.changes import WAKES
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.settings import DriveSettings
-from automotive_cosim.drives.wakes import WAKES
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
 from automotive_cosim.formats.bounds import READERS

@@ -39,7 +39,6 @@ from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.folder import add_folder
 from automotive_cosim.traffic.fork import Simulations
 from tests import farm, preloaded
 from tests.farm import NO_LIBSUMO
@@ -351,7 +350,7 @@ def own_tasks(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
 
     def add(folder: Path) -> None:
         monkeypatch.setattr(CATALOGUE, "_tasks", {**shipped})
-        add_folder(CATALOGUE, folder)
+        CATALOGUE.add_folder(folder)
 
     return add
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from automotive_cosim.run.budget import Spent
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.meter import Spent
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.stage import JobStage

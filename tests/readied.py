@@ -23,13 +23,13 @@ from automotive_cosim.agents.wire import Wire
 from automotive_cosim.run import fork_server, processes, worker
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.folder import add_folder
 from tests import farm, preloaded
 
 with suppress(ModuleNotFoundError):  # the studies may not be installed
     import_module("automotive_cosim.studies.reroute.batch")
 
 _spare: list[Any] = []
+len(CATALOGUE)  # reads it, for all workers
 _started = fork_server._started
 
 
@@ -76,7 +76,7 @@ _work = processes._work
 
 def _work_with_own_tasks(jobs: Any, opener: Any, folder: Path, environment: Mapping[str, str]) -> None:
     if environment.get(VARIABLE):
-        add_folder(CATALOGUE, Path(environment[VARIABLE]))
+        CATALOGUE.add_folder(Path(environment[VARIABLE]))
     _work(jobs, opener, folder, environment)
 
 

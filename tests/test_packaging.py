@@ -99,21 +99,22 @@ def test_wheel_and_editable_install_do_without_the_links(tmp_path, project, give
     editable, wheel = sorted(checkout.glob("*.whl"))
     names = set(zipfile.ZipFile(wheel).namelist())
     for name, folder in given["package_dir"].items():
-        inside = {file.relative_to(ROOT / folder).as_posix() for file in (ROOT / folder).rglob("*.py")}
+        every = (file for kind in ("py", "toml") for file in (ROOT / folder).rglob(f"*.{kind}"))
+        inside = {file.relative_to(ROOT / folder).as_posix() for file in every}
         assert {f"{name.replace('.', '/')}/{file}" for file in inside} <= names
     zipfile.ZipFile(editable).extractall(tmp_path / "site")
     code = f"""
 import site, sys
 site.addsitedir({str(tmp_path / "site")!r})
 sys.path += {[each for each in sys.path if each.endswith("site-packages")]!r}
-import automotive_cosim.agents, automotive_cosim.sumo_scenarios, automotive_cosim.tasks.hard
-print(*(sys.modules[f"automotive_cosim.{{name}}"].__file__ for name in ("agents", "sumo_scenarios", "tasks.hard")))
+import automotive_cosim.agents, automotive_cosim.sumo_scenarios, automotive_cosim.tasks
+print(*(sys.modules[f"automotive_cosim.{{name}}"].__file__ for name in ("agents", "sumo_scenarios", "tasks")))
 """
     done = subprocess.run(
         [sys.executable, "-I", "-S", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
     )
     found = [Path(each).relative_to(checkout).parent.as_posix() for each in done.stdout.split()]
-    assert found == ["agents", "sumo_scenarios", "tasks/hard"]
+    assert found == ["agents", "sumo_scenarios", "tasks"]
 
 
 def test_every_template_and_style_is_package_data(project):

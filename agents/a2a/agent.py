@@ -29,7 +29,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import ModelReply, ToolCall, believed
 
 if TYPE_CHECKING:
-    from automotive_cosim.agents.a2a.line import AgentLine
+    from automotive_cosim.agents.a2a.client import AgentLine
 
 MOST_CALLS = 10
 """Most calls of one answer; each is a step."""
@@ -219,7 +219,7 @@ class A2AAgent:
 
 def _line(address: str) -> AgentLine:
     try:
-        from automotive_cosim.agents.a2a.line import AgentLine
+        from automotive_cosim.agents.a2a.client import AgentLine
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("a2a", "httpx", "google"):
             raise

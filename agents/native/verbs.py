@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isfinite
 from typing import Any
@@ -71,6 +71,8 @@ class Meaning(StrEnum):
     """An action of the car that screens in general do not know, as a JSON object."""
 
 
+POINTS = ("point", "start_point", "coordinate", "start_box", "box_2d")
+"""Arguments with a point, in any format."""
 TOUCHES: Mapping[Meaning, ActionType] = {
     Meaning.TAP: ActionType.CLICK,
     Meaning.DOUBLE_TAP: ActionType.DOUBLE_TAP,
@@ -103,7 +105,7 @@ class Verb:
     ways: tuple[str, ...] = ()
     """The directions of an amount above and below zero, if the direction is told so."""
     point_optional: bool = False
-    """Whether it may come without a point: then it is where the last one was."""
+    """Whether it may come without a point: then it is where the last one was; a drag without an end is a tap."""
     unasked: bool = False
     """Whether the word is read if a model says it, but not offered."""
 
@@ -153,6 +155,9 @@ def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
             x, y = _start(verb, call, hand)
             return [Action(TOUCHES[verb.meaning], x=x, y=y)]
         case Meaning.TYPE:
+            named = next((name for name in POINTS if name in call.arguments), "")
+            if named and not verb.at:  # a target that the format does not ask for
+                verb = replace(verb, at=(named,))
             typed = text.removesuffix("\n")
             is_entered = typed != text or _is_on(verb.enter, call)
             enter = [Action(ActionType.KEYBOARD_ENTER)] if is_entered else []
@@ -163,7 +168,10 @@ def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
             x, y = _point(verb.at, call, hand.screen) if _has_point(verb, call) else _middle(hand.screen)
             return [Action(ActionType.SWIPE, x=x, y=y, direction=_direction(verb, call))]
         case Meaning.DRAG:
-            return [drag(_start(verb, call, hand), _point(verb.to, call, hand.screen))]
+            start = _start(verb, call, hand)
+            if verb.point_optional and not any(name in call.arguments for name in verb.to):
+                return [Action(ActionType.CLICK, x=start[0], y=start[1])]
+            return [drag(start, _point(verb.to, call, hand.screen))]
         case Meaning.KEY:
             return [Action(_key(text))]
         case Meaning.OPEN:

@@ -193,10 +193,13 @@ def tell_stopped(end: Progress[Any]) -> None:
         raise UserError(f"{end.stopped}; {left} left: rerun with a larger budget to continue")
 
 
-def tell_notes(scenarios: Iterable[Scenario]) -> None:
-    """Prints what is assumed, set or left out in other people's scenarios, to standard error."""
+def tell_notes(scenarios: Iterable[Scenario], *, runs: bool = True) -> None:
+    """Prints what is assumed, set or left out in other people's scenarios, to standard error; if they are to run,
+    also how much of SUMO's traffic that changes."""
+    from automotive_cosim.scenarios.difference import notes_of
+
     for scenario in scenarios:
-        for note in scenario.notes:
+        for note in notes_of(scenario) if runs else scenario.notes:
             typer.echo(f"note: {note}", err=True)
 
 

@@ -47,7 +47,7 @@ def events(as_json: AsJson = False) -> None:
 
 def wakes(as_json: AsJson = False) -> None:
     """List the changes of the readings that end a wait on a drive."""
-    from automotive_cosim.drives.wakes import WAKES
+    from automotive_cosim.drives.changes import WAKES
 
     _tell("wakes", [{"id": each.name, "about": each.about} for each in WAKES], as_json=as_json)
 

@@ -64,8 +64,8 @@ def evaluate(
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.coverage import unit_of
-    from automotive_cosim.run.fit import misfits
     from automotive_cosim.run.forecast import forecast
+    from automotive_cosim.run.model_check import misfits
     from automotive_cosim.run.plan import make_plan, read_plan
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.run.store import megabytes

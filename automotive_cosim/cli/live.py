@@ -34,6 +34,7 @@ from automotive_cosim.run.words import (
     speed_in_words,
 )
 from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenarios.difference import notes_of
 from automotive_cosim.tasking.policy import first_breaches
 from automotive_cosim.traffic.options import read_configuration
 
@@ -75,7 +76,7 @@ class Notes(EpisodeObserver):
         self._episode: Episode | None = None
 
     def loading(self, scenario: Scenario) -> None:
-        for note in scenario.notes:
+        for note in notes_of(scenario):
             print(f"note: {note}", file=sys.stderr)
 
     def begun(self, session: Episode, shot: Shot) -> None:
@@ -116,7 +117,7 @@ class Live(EpisodeObserver):
 
     def loading(self, scenario: Scenario) -> None:
         """Shows what is loaded, and the assumptions about it."""
-        for note in scenario.notes:
+        for note in notes_of(scenario):
             self._console.print(Text(f"note: {note}", style="yellow"), soft_wrap=True)
         size_mb = read_configuration(scenario.config).net.stat().st_size / 1e6
         what = f"loading the network ({megabytes_in_words(size_mb)})"

@@ -71,7 +71,7 @@ def show(
     if as_json:
         print_json({**_shown(found), **_edges_json(known, all_of_them=edges)})
         return
-    tell_notes([found])
+    tell_notes([found], runs=False)
     if edges:
         for street in known:
             for edge in street.edges:

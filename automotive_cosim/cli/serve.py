@@ -39,7 +39,7 @@ def serve(
     game = dealt = None
     if told.play or told.study:
         from automotive_cosim.errors import UserError
-        from automotive_cosim.run.kept import is_trial
+        from automotive_cosim.run.trial_folder import is_trial
         from automotive_cosim.serve.dealing import read_study
         from automotive_cosim.serve.play import Game
         from automotive_cosim.serve.study import PeopleStudy

@@ -51,7 +51,7 @@ def show(
     as_json: AsJson = False,
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""
-    from automotive_cosim.proof.reach import measured
+    from automotive_cosim.proof.frequency import measured
     from automotive_cosim.run import difficulty
     from automotive_cosim.tasking.words import choices_in_words, half_in_words
     from automotive_cosim.tasks import CATALOGUE

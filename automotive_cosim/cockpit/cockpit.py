@@ -22,7 +22,6 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.cockpit import accessibility, calls, language, road
-from automotive_cosim.cockpit.aboard import Occupant, take_seats
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.map.commands import Pan
 from automotive_cosim.cockpit.apps.map.lookout import sights
@@ -36,11 +35,12 @@ from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.changes import CarChange, schedule
 from automotive_cosim.cockpit.commands import AskDriver, Set
 from automotive_cosim.cockpit.content import content
+from automotive_cosim.cockpit.departure import put_back
 from automotive_cosim.cockpit.display import Display
-from automotive_cosim.cockpit.fresh import put_back
-from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Back, Key, Show, write
+from automotive_cosim.cockpit.missing_parts import Lacking
+from automotive_cosim.cockpit.occupants import Occupant, take_seats
 from automotive_cosim.cockpit.picture import picture
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.readings import readings

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from automotive_cosim.cockpit.commands import Set
-from automotive_cosim.cockpit.lacking import Lacking
+from automotive_cosim.cockpit.missing_parts import Lacking
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Type
 from automotive_cosim.cockpit.widgets import Label, Slider, Widget

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.aboard import Seat, breath
 from automotive_cosim.cockpit.cabin import SUN_W, Air, parked_c
+from automotive_cosim.cockpit.occupants import Seat, breath
 from automotive_cosim.cockpit.signals import HVAC, OUTSIDE
 from automotive_cosim.cockpit.vehicle import Vehicle
 

@@ -40,7 +40,13 @@ from automotive_cosim.formats.words import shown
 
 CallMade = Message | Feedback
 """What a call becomes: the message to perform or, of a reading or a refusal, the answer itself."""
-UNITS: Mapping[str, str] = {"km/h": "km_per_h", "s": "seconds", "dB": "decibels", "mm": "millimetres"}
+UNITS: Mapping[str, str] = {
+    "Celsius": "celsius",
+    "km/h": "km_per_h",
+    "s": "seconds",
+    "dB": "decibels",
+    "mm": "millimetres",
+}
 """VSS's units, where they are no word."""
 
 

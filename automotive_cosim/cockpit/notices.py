@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from automotive_cosim.cockpit.aboard import Kind, seated
+from automotive_cosim.cockpit.occupants import Kind, seated
 from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, LIGHTS, MOTION, OUTSIDE, TYRE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.telltales import Telltale

@@ -226,7 +226,7 @@ def stepper(
 
 def _step(signal: Signal[float], signals: Signals) -> str:
     """A stepper's step in the unit of the display, as whole as the value that is shown."""
-    if signal.unit == "celsius" and signals[HMI.TEMPERATURE_UNIT] == "F":
+    if signal.unit == "Celsius" and signals[HMI.TEMPERATURE_UNIT] == "F":
         return f"{1.8 * signal.step:.0f}"
     if signal.unit == "km/h" and signals[HMI.DISTANCE_UNIT] == "MILES":
         return f"{signal.step / MILE_KM:.0f}"

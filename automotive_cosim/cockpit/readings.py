@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.aboard import in_words
+from automotive_cosim.cockpit.occupants import in_words
 from automotive_cosim.cockpit.signals import ADAS, BODY, ENERGY, HVAC, LIGHTS, MOTION, OUTSIDE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import VehicleState

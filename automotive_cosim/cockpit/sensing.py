@@ -7,8 +7,8 @@ from automotive_cosim.cockpit.cabin import Air, Cabin
 from automotive_cosim.cockpit.changes import CarChange, step
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.notices import TYRES
-from automotive_cosim.cockpit.reach import NEWS_EVERY_S, RADAR_M
 from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.sensor_range import NEWS_EVERY_S, RADAR_M
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,

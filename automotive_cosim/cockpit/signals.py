@@ -1,11 +1,13 @@
-"""The car's signals: typed constants under COVESA VSS 6.0 paths, and the store that holds their values.
+"""The car's signals: typed constants under COVESA VSS paths, and the store that holds their values.
 
     signals[HVAC.FAN_SPEED] = 60.0        # checked: type, range, allowed values
     signals[LIGHTS.HIGH_BEAM]             # bool, to a type checker too
 
-Paths, units and allowed values are those of the Vehicle Signal Specification
-(https://github.com/COVESA/vehicle_signal_specification); ranges are narrowed to what this car's switches offer.
-What VSS lacks has paths in its manner.
+Paths, kinds, units and allowed values are those of the Vehicle Signal Specification, release 6.0 of January 2026
+(https://github.com/COVESA/vehicle_signal_specification), but ``MassageLevel`` and ``IsOccupied``, names of its
+release 5.1; ranges are narrowed to what this car's switches offer. These differ: child locks, the sunroof and the
+language are sensors in VSS, here switches as well; the horn is an actuator there; ambient light may be 0, which is
+off. What VSS lacks has paths in its manner.
 """
 
 from __future__ import annotations
@@ -149,8 +151,8 @@ def _text(path: str) -> Signal[str]:
 class HVAC:
     """Heating, ventilation and air conditioning. One blower and one air flap serve both front seats."""
 
-    DRIVER_TEMPERATURE = _set("Cabin.HVAC.Station.Row1.Driver.Temperature", 21.0, "celsius", 16, 28, 0.5)
-    PASSENGER_TEMPERATURE = _set("Cabin.HVAC.Station.Row1.Passenger.Temperature", 21.0, "celsius", 16, 28, 0.5)
+    DRIVER_TEMPERATURE = _set("Cabin.HVAC.Station.Row1.Driver.Temperature", 21.0, "Celsius", 16, 28, 0.5)
+    PASSENGER_TEMPERATURE = _set("Cabin.HVAC.Station.Row1.Passenger.Temperature", 21.0, "Celsius", 16, 28, 0.5)
     FAN_SPEED = _set("Cabin.HVAC.Station.Row1.Driver.FanSpeed", 30.0, "percent", 0, 100, 10)
     AIR_DISTRIBUTION = _choice("Cabin.HVAC.Station.Row1.Driver.AirDistribution", "MIDDLE", "UP MIDDLE DOWN")
     AIR_CONDITIONING = _switch("Cabin.HVAC.IsAirConditioningActive")
@@ -162,12 +164,12 @@ class HVAC:
     MAX_COOLING = _switch("Cabin.HVAC.IsMaxAirConditioningActive")
     MAX_DEFROST = _switch("Cabin.HVAC.IsMaxDefrostActive")
     PURIFIER = _switch("Cabin.HVAC.IsAirPurifierActive")
-    CABIN_TEMPERATURE = _measure("Cabin.HVAC.AmbientAirTemperature", 21.0, "celsius", -60, 90)
+    CABIN_TEMPERATURE = _measure("Cabin.HVAC.AmbientAirTemperature", 21.0, "Celsius", -60, 90)
     CABIN_HUMIDITY = _measure("Cabin.HVAC.AmbientAirHumidity", 45.0, "percent", 0, 100)
     CABIN_FINE_DUST = _measure("Cabin.HVAC.AmbientAirFineDust", 4.0, "ug/m^3", 0, 2000)
     KEPT = _switch("Cabin.HVAC.IsKeptAfterParking")
     """Whether the climate control goes on for those who stay in the parked car."""
-    FORECAST = _measure("Cabin.HVAC.ForecastTemperature", 21.0, "celsius", -60, 120)
+    FORECAST = _measure("Cabin.HVAC.ForecastTemperature", 21.0, "Celsius", -60, 120)
     """The air 20 minutes after the driver has left the car, as everything is set now (``forecast``)."""
 
 
@@ -189,8 +191,8 @@ class SEAT:
     PASSENGER_RECLINE = _set("Cabin.Seat.Row1.PassengerSide.Backrest.Recline", 24.0, "degrees", 0, 60, 2)
     PASSENGER_LUMBAR = _set("Cabin.Seat.Row1.PassengerSide.Backrest.LumbarSupport", 30.0, "percent", 0, 100, 10)
     PASSENGER_MASSAGE = _set("Cabin.Seat.Row1.PassengerSide.MassageLevel", 0.0, "percent", 0, 100, 50)
-    DRIVER_TEMPERATURE = _measure("Cabin.Seat.Row1.DriverSide.SurfaceTemperature", 21.0, "celsius", -60, 120)
-    PASSENGER_TEMPERATURE = _measure("Cabin.Seat.Row1.PassengerSide.SurfaceTemperature", 21.0, "celsius", -60, 120)
+    DRIVER_TEMPERATURE = _measure("Cabin.Seat.Row1.DriverSide.SurfaceTemperature", 21.0, "Celsius", -60, 120)
+    PASSENGER_TEMPERATURE = _measure("Cabin.Seat.Row1.PassengerSide.SurfaceTemperature", 21.0, "Celsius", -60, 120)
     DRIVER_BELT = _is("Cabin.Seat.Row1.DriverSide.IsBelted", True)
     PASSENGER_BELT = _is("Cabin.Seat.Row1.PassengerSide.IsBelted")
     REAR_LEFT_BELT = _is("Cabin.Seat.Row2.DriverSide.IsBelted")
@@ -383,7 +385,7 @@ class ENERGY:
 class OUTSIDE:
     """Measurements of sky, air and light."""
 
-    TEMPERATURE = _measure("Exterior.AirTemperature", 15.0, "celsius", -60, 70)
+    TEMPERATURE = _measure("Exterior.AirTemperature", 15.0, "Celsius", -60, 70)
     HUMIDITY = _measure("Exterior.Humidity", 60.0, "percent", 0, 100)
     LIGHT = _measure("Exterior.LightIntensity", 100.0, "percent", 0, 100)
     VISIBILITY = _measure("Exterior.Visibility", 20_000.0, "m", 0, None)

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from automotive_cosim.cockpit.aboard import breath
 from automotive_cosim.cockpit.cabin import AIR_CP, BLOWER_FULL, Air, Controls, sweeps_per_minute
-from automotive_cosim.cockpit.lacking import Lacking
+from automotive_cosim.cockpit.missing_parts import Lacking
+from automotive_cosim.cockpit.occupants import breath
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,

@@ -68,7 +68,7 @@ from automotive_cosim.contracts.requests import (
     SlowDown,
 )
 from automotive_cosim.contracts.roads import GroundArea, GroundKind, Road, RoadNetwork, in_drawing_order
-from automotive_cosim.contracts.sight import Sight, SightKind
+from automotive_cosim.contracts.sensed import Sight, SightKind
 from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, SumoSignal
 
 __all__ = [

@@ -10,8 +10,8 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import CALL
 from automotive_cosim.contracts import DrivingState, Limit, RouteOption
 from automotive_cosim.contracts.errand import Errand, ErrandKind
-from automotive_cosim.cosim.hands import handled
 from automotive_cosim.cosim.moment import Moment, around
+from automotive_cosim.cosim.occupant_acts import handled
 from automotive_cosim.geo.connectivity import OFFLINE, Modem
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo

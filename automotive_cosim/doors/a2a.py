@@ -32,7 +32,7 @@ from starlette.applications import Starlette
 from automotive_cosim import __version__
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.doors.assessment import Assessment, read_assessment, result_of
-from automotive_cosim.doors.guard import Guarded
+from automotive_cosim.doors.guard import Guarded, Punctual
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.processes import Processes
@@ -234,4 +234,4 @@ def serve(host: str, port: int, url: str, workers: int) -> None:
         SystemExit: the address cannot be used.
     """
     app = make_app(Assessor(workers), host, port, url)
-    uvicorn.run(app, host=host, port=port, log_level="warning", timeout_graceful_shutdown=GRACE_S)
+    uvicorn.run(app, host=host, port=port, log_level="warning", timeout_graceful_shutdown=GRACE_S, http=Punctual)

@@ -7,19 +7,82 @@ one: a request names this server, comes from no other site and, where there is a
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 from collections.abc import Collection
 from http import HTTPStatus
+from typing import ClassVar
 from urllib.parse import parse_qs
 
 from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
+from uvicorn.protocols.http.auto import AutoHTTPProtocol
 
 from automotive_cosim.service.own_names import is_own, own_names
 
+OTHER_SITE = "other sites may not use this"
 MOST_BYTES = 2**20
 """Longest request; an action has some hundred bytes, an assessment some thousand."""
+
+
+MOST_CONNECTIONS = 256
+"""At once. One more ends the oldest that has sent no whole request yet."""
+PATIENCE_S = 10.0
+"""In which a connection has to have sent one."""
+
+
+class Punctual(AutoHTTPProtocol):  # type: ignore[misc, valid-type]
+    """A connection that makes room for others until it has sent a whole request, and has to do so soon.
+
+    uvicorn waits for ever, and at its own limit refuses whoever comes.
+    """
+
+    _open: ClassVar[dict[Punctual, None]] = {}
+
+    def connection_made(self, transport: asyncio.Transport) -> None:
+        """Makes room for itself, or ends if there is none."""
+        super().connection_made(transport)
+        self._open[self] = None
+        if len(self._open) > MOST_CONNECTIONS:
+            oldest = next(each for each in self._open if each.is_waiting)  # at last, this one
+            del self._open[oldest]
+            oldest.transport.abort()
+        self._late = self.loop.call_later(PATIENCE_S, self._look, self.cycle)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Is gone."""
+        self._open.pop(self, None)
+        self._late.cancel()
+        super().connection_lost(exc)
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether a request is still to come, or to be sent to its end."""
+        return bool(self.cycle is None or self.cycle.more_body or self.cycle.response_complete)
+
+    def _look(self, before: object) -> None:
+        """Ends where nothing has come about since it last looked."""
+        if self.is_waiting and self.cycle is before:
+            self.transport.abort()
+        else:
+            self._late = self.loop.call_later(PATIENCE_S, self._look, self.cycle if self.is_waiting else self)
+
+
+class SameSite:
+    """An application that answers no browser that shows another site: one that asks says where it is."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        """Guards an application that may be called by any name."""
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answers a request, or refuses it."""
+        headers = Headers(scope=scope) if scope["type"] != "lifespan" else Headers({})
+        origin = headers.get("origin")
+        is_other = origin is not None and origin.partition("://")[2] != headers.get("host", "")
+        app = PlainTextResponse(OTHER_SITE, HTTPStatus.FORBIDDEN) if is_other else self._app
+        await app(scope, receive, send)
 
 
 class Guarded:
@@ -55,7 +118,7 @@ class Guarded:
         if not is_own(host, self._names, self._port) and host.lower() not in self._also:
             return HTTPStatus.MISDIRECTED_REQUEST, "this server has another name; use the address that it printed"
         if origin not in (None, f"http://{host}"):
-            return HTTPStatus.FORBIDDEN, "other sites may not use this"
+            return HTTPStatus.FORBIDDEN, OTHER_SITE
         length = headers.get("content-length", "0")
         if "transfer-encoding" in headers or not length.isdecimal():
             return HTTPStatus.LENGTH_REQUIRED, "say how long the request is"

@@ -14,12 +14,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from fastapi import FastAPI
 from openenv.core.env_server import Action, Environment, Observation, State, create_app
 from pydantic import Field
 
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
+from automotive_cosim.doors.guard import SameSite
 from automotive_cosim.doors.shared import (
     SCENARIOS,
     conditions_of,
@@ -181,13 +181,15 @@ def _observation(
     )
 
 
-def app() -> FastAPI:
-    """The HTTP server, as a FastAPI application."""
-    return create_app(
-        CarEnvironment,
-        CarAction,
-        CarObservation,
-        "automotive_cosim",
-        max_concurrent_envs=SESSIONS,
-        state_cls=CarState,
+def app() -> SameSite:
+    """The HTTP server, as an application that answers no other site's pages."""
+    return SameSite(
+        create_app(
+            CarEnvironment,
+            CarAction,
+            CarObservation,
+            "automotive_cosim",
+            max_concurrent_envs=SESSIONS,
+            state_cls=CarState,
+        )
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 
-from automotive_cosim.drives.wakes import EASED_S, WAKES, Drive, Level, Nearness, Wake
+from automotive_cosim.drives.changes import EASED_S, WAKES, Drive, Level, Nearness, Wake
 
 
 def noticed(drive: Drive, changed: Sequence[str] = (), wakes: Sequence[Wake] = WAKES) -> str:

@@ -10,9 +10,9 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from automotive_cosim.cockpit.aboard import Seat
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES
+from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.contracts.given import Language

@@ -9,8 +9,8 @@ from functools import reduce
 
 import numpy as np
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat
 from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.script import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DriveScript, Staged

@@ -9,9 +9,9 @@ from typing import Annotated
 
 from annotated_types import Ge, Gt, Le, MinLen
 
-from automotive_cosim.cockpit.aboard import Occupant
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.cockpit.occupants import Occupant
 from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.formats.annotations import Form, Latitude, Longitude
 from automotive_cosim.formats.checked import as_json, checked

@@ -18,13 +18,13 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, refusal, spoken
 from automotive_cosim.drives.alarm import Alarm, Noticed, noticed
+from automotive_cosim.drives.changes import FAR_S, LONGEST_S
 from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
 from automotive_cosim.drives.errands import said
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, Tracker
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
-from automotive_cosim.drives.wakes import FAR_S, LONGEST_S
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.episode.observer import Observer

@@ -10,7 +10,7 @@ from typing import Annotated
 
 from annotated_types import Ge, Gt, Le, Lt
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.errands import with_errands
 from automotive_cosim.drives.family import timeline

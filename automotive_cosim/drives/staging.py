@@ -12,9 +12,9 @@ from typing import Literal
 
 import numpy as np
 
-from automotive_cosim.cockpit.aboard import SIGNALS, Occupant, Seat
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.reach import RADAR_M
+from automotive_cosim.cockpit.occupants import SIGNALS, Occupant, Seat
+from automotive_cosim.cockpit.sensor_range import RADAR_M
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, TYRE, Signal
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.sky import (

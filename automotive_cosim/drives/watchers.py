@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
-from automotive_cosim.drives.hands import Hands
-from automotive_cosim.drives.looks import LOOK_S, LOOKS, Concern, fog_lamps_lit
+from automotive_cosim.drives.attention import LOOK_S, LOOKS, Concern, fog_lamps_lit
 from automotive_cosim.drives.reading import Gathered, Reader
+from automotive_cosim.drives.touches import Hands
 from automotive_cosim.interface.observe import Channel
 
 READS = frozenset({Channel.VEHICLE, Channel.CONTEXT, Channel.ELEMENTS})

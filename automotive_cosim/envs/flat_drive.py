@@ -33,12 +33,12 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
+from automotive_cosim.drives.changes import DUE_S, LONGEST_S, WAKES
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.reading import NO_LINE, Gathered, Reader
 from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
-from automotive_cosim.drives.wakes import DUE_S, LONGEST_S, WAKES
 from automotive_cosim.envs.base import SessionEnv, ended
 from automotive_cosim.envs.drive import settings_of
 from automotive_cosim.envs.numbers import hashed, number_of

@@ -122,5 +122,6 @@ def unread(element: XmlElement) -> None:
     for part in element.parts:
         if row.parts.get(part.tag) == CARRIED and part.tag not in element.taken:
             raise part.refused(f"in <{element.tag}> is not imported here; remove it")
-        if table().get(part.tag, NAMELESS).word == CARRIED:
+        is_left = row.parts.get(part.tag) == DIFFERENT and part.tag == "CatalogReference"
+        if table().get(part.tag, NAMELESS).word == CARRIED and not is_left:
             unread(part)

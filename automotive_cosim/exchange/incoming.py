@@ -8,9 +8,12 @@ The ego is the cockpit's car, which SUMO's driver drives; other vehicles are inc
 
 from __future__ import annotations
 
+import re
+import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from datetime import datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -20,17 +23,22 @@ from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import unread
 from automotive_cosim.exchange.places import RoadPlaces
-from automotive_cosim.exchange.roads import read_roads
+from automotive_cosim.exchange.roads import mirror, read_roads
 from automotive_cosim.exchange.storyboard import ReadStory, ScriptEntity, Waited, read_story
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import copy, write_whole
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
+from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.script import EGO as THE_EGO
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
 EGO = "ego"
 TRIP = "imported"
+REACTION_S, BRAKES_MPS2 = 1.0, 4.5
+"""What SUMO's passenger car keeps and brakes with: its defaults."""
+HEIGHTS = re.compile(rb"\+(geoidgrids|geoid_crs|vunits)=[^\s<\]]*")
+"""What a projection says of heights, which roads here have not; its grids are on few machines."""
 NET, ROUTES = "road.net.xml", "none.rou.xml"
 
 
@@ -69,7 +77,8 @@ def import_openscenario(
         raise ScenarioError(f"there is no road {source}, which {file} needs; give --network a SUMO network")
     with appearing(out, replaces=replaces) as folder:
         places = RoadPlaces(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
-        text = scenario_text(out.name, file, story, places, country)
+        has_place = places.net.hasGeoProj() and not read_network(folder / NET).unplaced
+        text = scenario_text(out.name, file, story, places, country, has_place=has_place)
         write_whole(folder / "scenario.toml", text)
         write_whole(folder / ROUTES, "<routes/>\n")
         write_config(folder / "road.sumocfg", NET, ROUTES, Sumo("road.sumocfg", warm_up_s=0.0))
@@ -90,32 +99,50 @@ def road_network(source: Path, folder: Path) -> Any:
     if source.name.endswith((".net.xml", ".xml")):
         copy(source, folder / NET, bounds.UNPACKED_BYTES)
         return sumolib.net.readNet(str(folder / NET), withInternal=False)
-    if source.name.endswith(".xodr"):
-        for road in read_roads(source).values():
-            if road.keeps_left:
-                raise road.element.refused(
-                    "has the rule LHT, which netconvert does not read; give --network a SUMO network"
-                )
-        ours = "road.xodr"
-        words: tuple[str, ...] = (
-            f"--opendrive-files={ours}",
-            "--offset.disable-normalization",
-            "--output.original-names",
-        )
-    else:
-        ours = f"{NET}.gz"
-        words = "-s", ours, "--offset.disable-normalization"
+    ours = "road.xodr" if source.suffix == ".xodr" else f"{NET}.gz"
+    words = ("-s", ours) if source.suffix != ".xodr" else (f"--opendrive-files={ours}", "--output.original-names")
     copy(source, folder / ours, bounds.UNPACKED_BYTES)
-    ok, printed = run("netconvert", (*words, "-o", NET), folder)
+    keeps_left = source.suffix == ".xodr" and _for_netconvert(source, folder / ours)
+    ok, printed = run("netconvert", (*words, "--offset.disable-normalization", "-o", NET), folder)
     if not ok:
         raise ScenarioError(f"netconvert cannot read {source}: {first_error(printed)}")
+    if keeps_left:
+        root = ET.parse(folder / NET).getroot()
+        mirror(root)
+        root.set("lefthand", "true")
+        for location in root.iter("location"):
+            for name in ("convBoundary", "origBoundary"):
+                x, y, x_most, y_most = location.attrib[name].split(",")
+                location.set(name, f"{x},{-float(y_most):.2f},{x_most},{-float(y):.2f}")
+        write_whole(folder / NET, ET.tostring(root, encoding="UTF-8", xml_declaration=True))
     return sumolib.net.readNet(str(folder / NET), withInternal=False)
+
+
+def _for_netconvert(source: Path, ours: Path) -> bool:
+    """Makes a file of roads one that netconvert reads rightly; returns whether they keep left.
+
+    It reads no rule: roads that keep left become their mirror image, which keeps right.
+    """
+    roads = read_roads(source).values()
+    keeps_left = any(road.keeps_left for road in roads)
+    for road in roads:
+        if road.keeps_left != keeps_left:
+            raise road.element.refused("keeps to another side than others of the file, which is not imported")
+    text = HEIGHTS.sub(b"", ours.read_bytes())
+    if keeps_left:
+        root = ET.fromstring(text)
+        mirror(root)
+        text = ET.tostring(root)
+    write_whole(ours, text)
+    return keeps_left
 
 
 # --- writing -----------------------------------------------------------------------------------------------------
 
 
-def scenario_text(name: str, file: Path, story: ReadStory, places: RoadPlaces, country: str) -> str:
+def scenario_text(
+    name: str, file: Path, story: ReadStory, places: RoadPlaces, country: str, *, has_place: bool
+) -> str:
     """The ``scenario.toml`` of what a file says.
 
     Raises:
@@ -138,6 +165,7 @@ def scenario_text(name: str, file: Path, story: ReadStory, places: RoadPlaces, c
                 "about": f"Imported from {file.name}.",
                 "country": country,
                 "time_zone": "UTC",
+                "has_place": None if has_place else False,
                 "start": (story.start or datetime(2026, 6, 16, 10, 0)).replace(microsecond=0),
             },
         ),
@@ -156,6 +184,7 @@ def scenario_text(name: str, file: Path, story: ReadStory, places: RoadPlaces, c
             },
         ),
     ]
+    _check_room(story, places)
     skies = sorted(story.skies, key=lambda each: each[0])
     if not skies or skies[0][0] > 0:
         skies.insert(0, (0.0, WEATHER))
@@ -169,6 +198,9 @@ def scenario_text(name: str, file: Path, story: ReadStory, places: RoadPlaces, c
     for title, values in blocks:
         text += f"\n{title}\n" if title else ""
         text += "".join(f"{key} = {toml_value(value)}\n" for key, value in values.items() if value is not None)
+    for signal in story.signals:  # also those for which nothing waits name places
+        for condition in (each for group in signal["when"] for each in group):
+            _waits(condition, 0, story, places)
     unread(story.root)
     return text
 
@@ -178,6 +210,24 @@ def _start(entity: ScriptEntity, story: ReadStory, places: RoadPlaces) -> tuple[
     if entity.place is None:
         raise entity.element.refused(f"named {entity.name} has no TeleportAction in Init, so that it has no place")
     return places.lane_at(places.spot(entity.place, story.entities), entity.front_m)
+
+
+def _check_room(story: ReadStory, places: RoadPlaces) -> None:
+    """Checks that SUMO lets all in at their first speeds: a follower must be able to brake behind its leader."""
+    by_lane: dict[str, list[tuple[float, float, ScriptEntity]]] = {}
+    for entity in story.entities.values():
+        lane, at_m = _start(entity, story, places)
+        mps = min(entity.speed_mps, lane.getSpeed()) if entity.name == story.ego else entity.speed_mps
+        by_lane.setdefault(lane.getID(), []).append((at_m, mps, entity))
+    for each in by_lane.values():
+        each.sort(key=lambda place: place[0])
+        for (at_m, mps, follower), (ahead_m, ahead_mps, leader) in pairwise(each):
+            gap_m = ahead_m - leader.length_m - at_m
+            if gap_m < mps * REACTION_S + max(0.0, mps**2 - ahead_mps**2) / (2 * BRAKES_MPS2):
+                raise follower.element.refused(
+                    f"named {follower.name} begins {gap_m:.0f} m behind {leader.name} with {mps:.1f} m/s, too near "
+                    "for SUMO to let it in; give it more room"
+                )
 
 
 def _place_of(lane: Any) -> int:
@@ -202,7 +252,7 @@ def _scripted(
         {
             "kind": "vehicle",
             "trip": TRIP,
-            "name": entity.name,
+            "name": _called(entity.name, story),
             "route": [each.getID() for each in way],
             "position_m": round(at_m, 2),
             "lane": _place_of(lane),
@@ -227,7 +277,10 @@ def _scripted(
 
 
 def _called(name: str, story: ReadStory) -> str:
-    return THE_EGO if name == story.ego else name
+    """What the scenario calls a vehicle: another than the ego may have its name in the file."""
+    if name == story.ego:
+        return THE_EGO
+    return f"{name} of the file" if name == THE_EGO else name
 
 
 def _waits(condition: Waited, group: int, story: ReadStory, places: RoadPlaces) -> dict[str, Any]:

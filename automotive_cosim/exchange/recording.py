@@ -9,8 +9,8 @@ from pathlib import Path
 
 from automotive_cosim.contracts import ActionType, Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.kept import read_steps
 from automotive_cosim.run.road import RoadRecord, read_record, road_in
+from automotive_cosim.run.trial_folder import read_steps
 
 
 @dataclass(frozen=True, slots=True)

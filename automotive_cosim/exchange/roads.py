@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import xml.etree.ElementTree as ET
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -18,6 +19,25 @@ KEPT = frozenset((
 ))  # fmt: skip
 """The elements that say where lanes are."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
+_CUBIC = "a", "b", "c", "d"
+MIRRORED: Mapping[str, tuple[str, ...]] = {
+    "geometry": ("y", "hdg"),
+    "arc": ("curvature",),
+    "spiral": ("curvStart", "curvEnd"),
+    "poly3": _CUBIC,
+    "paramPoly3": ("aV", "bV", "cV", "dV"),
+    "laneOffset": _CUBIC,
+    "lane": ("id",),
+    "predecessor": ("id",),
+    "successor": ("id",),
+    "laneLink": ("from", "to"),
+    "validity": ("fromLane", "toLane"),
+    "signal": ("t", "hOffset"),
+    "signalReference": ("t",),
+    "object": ("t", "hdg"),
+}
+"""The attributes of OpenDRIVE that change their signs in a mirror which lies along the x axis."""
+TURNS = str.maketrans("lLrR", "rRlL")
 SAMPLES = 2000
 """Of a cubic whose length along the curve is sought."""
 
@@ -123,3 +143,36 @@ def read_roads(path: Path) -> Mapping[str, OpenDriveRoad]:
     """
     root = read_tree(path, KEPT)
     return {road.name: road for road in map(OpenDriveRoad, root.all("road"))}
+
+
+def mirror(root: ET.Element) -> None:
+    """Mirrors the roads of OpenDRIVE, or a network of SUMO's, along the x axis: left becomes right."""
+    mirrored = MIRRORED if root.tag == "OpenDRIVE" else {"junction": ("y",)}
+    for element in root.iter():
+        for name in mirrored.get(element.tag, ()):
+            element.set(name, _turned(element.get(name, "0")))
+        for name in ("shape", "customShape"):
+            if points := element.get(name):
+                element.set(name, " ".join(map(_mirrored, points.split())))
+    for section in root.iter("laneSection"):
+        for side in section:
+            side.tag = {"left": "right", "right": "left"}.get(side.tag, side.tag)
+            side[:] = reversed(side)  # from left to right
+        section[:] = sorted(section, key=lambda each: ("left", "center", "right").index(each.tag))
+    for connection in root.iter("connection"):
+        if way := connection.get("dir"):
+            connection.set("dir", way.translate(TURNS))
+    for lane in root.iterfind("edge/lane/param[@key='origId']"):
+        lanes = (name.rpartition("_") for name in lane.get("value", "").split())
+        lane.set("value", " ".join(f"{road}_{_turned(number)}" for road, _, number in lanes))
+
+
+def _turned(number: str) -> str:
+    if not number.strip("0.-"):
+        return number
+    return number[1:] if number.startswith("-") else f"-{number}"
+
+
+def _mirrored(point: str) -> str:
+    x, y, *z = point.split(",")
+    return ",".join((x, _turned(y), *z))

@@ -103,8 +103,9 @@ def read_story(file: Path, ego: str) -> ReadStory:
 
 
 def _entity(entity: XmlElement) -> ScriptEntity:
-    vehicle = entity.part("Vehicle")
-    vehicle.word("vehicleCategory", *DRIVEN)
+    vehicle = entity.find("Vehicle") or entity.part("MiscObject")
+    if vehicle.tag == "Vehicle":
+        vehicle.word("vehicleCategory", *DRIVEN)
     trailer = vehicle.find("Trailer")
     if trailer is not None and trailer.part("TrailerRef").text("entityRef"):
         raise trailer.refused("is outside what is imported; remove it")
@@ -199,6 +200,10 @@ _AT_THE_START = {
 }
 
 
+_WITHOUT_EFFECT = "ActivateControllerAction", "ControllerAction", "VisibilityAction"
+"""Actions that change nothing here, or are refused."""
+
+
 def _environment(action: XmlElement, at_s: float, story: ReadStory) -> None:
     made = action.one("Environment")
     clock, weather = made.find("TimeOfDay"), made.find("Weather")
@@ -253,6 +258,7 @@ def _number(board: XmlElement, story: ReadStory) -> None:
             events.append((element, around))
         for part in element.parts:
             if part.tag in _NAMED:
+                part.text("name", "")
                 element.taken.add(part.tag)
                 walk(part, [*around, part])
 
@@ -310,7 +316,10 @@ def _by_value(by: XmlElement, shared: Waited, story: ReadStory) -> Iterator[list
         rule = what.word("rule", *BELOW)
         yield [shared | {"what": "time", "value": what.number("value"), "below": BELOW[rule]}]
     elif what.tag == "ParameterCondition":
-        name = what.text("parameterRef").lstrip("$")
+        name = what.attributes.get("parameterRef", "").lstrip("$")
+        what.taken.update(("parameterRef", "value", "rule"))
+        if not name:
+            return
         if name not in what.scope:
             raise what.refused(f"names no parameter {name!r}")
         if _holds(what.scope[name], what.word("rule", *BELOW, "equalTo", "notEqualTo"), what.text("value")):
@@ -321,6 +330,9 @@ def _by_value(by: XmlElement, shared: Waited, story: ReadStory) -> Iterator[list
         state = what.word("state", *BEGUN, *ENDED)
         if not events:
             raise what.refused(f"names no {kind} {name!r}")
+        if shared["edge"] == "falling":
+            return
+        shared = {**shared, "edge": ""}  # what has begun or ended stays so
         if state in ENDED:
             yield [shared | {"what": "ended", "of": event} for event in dict.fromkeys(event for event, _ in events)]
         elif kind == "story":
@@ -346,7 +358,8 @@ def _of_entity(what: XmlElement, story: ReadStory) -> Waited:
     if what.tag == "ReachPositionCondition":
         return made | {"position": what.part("Position"), "below": True}
     if "rule" in what.attributes:
-        made["below"] = BELOW[what.word("rule", *BELOW)]
+        rule = what.word("rule", *BELOW, "equalTo")
+        made |= {"below": BELOW.get(rule, False), "equal": rule == "equalTo"}
     if "entityRef" in what.attributes:
         made["to"] = _named(story, what).name
     if what.tag == "TimeToCollisionCondition":
@@ -442,6 +455,7 @@ def _event(
         "when": [group for group in when if group],
         "alone": event.word("priority", "overwrite", "override", "parallel") != "parallel",
     }
+    signal = {"name": shared["name"], "at_s": shared["at_s"], "when": shared["when"]}
     for action in event.all("Action"):
         what = action.one("GlobalAction", "PrivateAction")
         if what.tag == "GlobalAction":
@@ -450,8 +464,15 @@ def _event(
             if is_over:
                 raise what.refused("can never happen; remove it")
             _environment(what.one("EnvironmentAction"), shared["at_s"], story)
+            story.signals.append(signal)
             continue
-        done = what.one("LongitudinalAction", "LateralAction")
+        done = what.one("LongitudinalAction", "LateralAction", *_WITHOUT_EFFECT)
+        if done.tag in _WITHOUT_EFFECT:
+            for actor in actors:
+                _AT_THE_START[done.tag](done, actor, story)
+            if not is_over:
+                story.signals.append(signal)
+            continue
         change = _speed if done.tag == "LongitudinalAction" else _lane
         for actor in actors:
             made = shared | change(done, story) | {"element": done}

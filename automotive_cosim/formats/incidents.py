@@ -204,9 +204,11 @@ class VehicleCondition:
     to: str = ""
     """The other vehicle."""
     value: float = 0.0
-    """It holds above this, or if ``below`` under it."""
+    """It holds above this, or as ``below`` and ``equal`` say."""
     below: bool = False
     """Whether it holds under ``value``, and before actions have begun or ended."""
+    equal: bool = False
+    """Whether it holds at ``value`` itself, within a hundredth."""
     x_m: float = 0.0
     """Of the place, where the front bumper comes to."""
     y_m: float = 0.0

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
@@ -37,7 +38,10 @@ class LimitedProcesses:
         most = cost or BUNDLE
         size = path.stat().st_size if is_file(path) else sum(map(_bytes, path.rglob("*")))
         self._seconds = most.free_s + most.s_per_mb * (size >> 20)
-        self._pool = ProcessPoolExecutor(count, initializer=_limit, initargs=(most.free_bytes + most.times * size,))
+        self._made = partial(
+            ProcessPoolExecutor, count, initializer=_limit, initargs=(most.free_bytes + most.times * size,)
+        )
+        self._pool = self._made()
 
     def __enter__(self) -> Self:
         return self
@@ -68,6 +72,8 @@ class LimitedProcesses:
         try:
             return future.result()
         except (MemoryError, BrokenProcessPool) as error:
+            if isinstance(error, BrokenProcessPool):  # which takes no further call
+                self._pool = self._made()
             raise UserError(
                 f"{self._path} takes more memory or processor time than a file of its size may: it is damaged, or "
                 "made to do that"

@@ -89,7 +89,7 @@ def scan(
     try:
         with ExitStack() as open_files:
             file = open_files.enter_context(opened(path))
-            open_files.enter_context(_without_collection())
+            open_files.enter_context(without_collection())
             target = None if copy is None else open_files.enter_context(drafted(copy))
             size = 0
             while piece := file.read(bounds.CHUNK_BYTES):
@@ -111,7 +111,7 @@ def scan(
 
 
 @contextmanager
-def _without_collection() -> Iterator[None]:
+def without_collection() -> Iterator[None]:
     """Collects no garbage meanwhile: what is read stays, and looking through it again and again takes a fifth of
     the time of a large network."""
     was_on = gc.isenabled()

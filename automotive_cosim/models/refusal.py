@@ -2,7 +2,7 @@
 
 Providers and servers agree on neither. A reason comes as ``error``, ``message``, ``detail``, a list of those, or as
 plain text or HTML; a pause in a header (RFC 9110 10.2.3: seconds or a date; OpenAI's and Azure's in milliseconds),
-in the body (Google's ``RetryInfo``) or in the words.
+in the body (Google's ``RetryInfo``), in the words, or as the time at which a limit that is used up begins anew.
 """
 
 from __future__ import annotations
@@ -27,8 +27,14 @@ REASONS = (
 )  # fmt: skip
 """Keys under which the words of a reason stand, in the order in which they are told. Names of capital letters count
 alike."""
+SINCE_1970_S = 1e9
+"""A larger number of seconds is no pause."""
 _PAUSES = {"retrydelay": 1.0, "retryafter": 1.0, "retryafterseconds": 1.0, "retryafterms": 1e-3}
 """Keys of a body under which a pause stands, in letters alone, and the seconds of one of its units."""
+_RESET = re.compile(r"(?:[\w-]+-)?ratelimit-(?:[\w-]+-)?reset(?:-[\w-]+)?", re.IGNORECASE)
+"""Headers with such a time: a pause, a date, or seconds or milliseconds since 1970."""
+_DRAFT = re.compile(r";\s*r=0\b[^,]*;\s*t=(\d+)")
+"""The same in the header ``RateLimit`` of IETF's draft."""
 _UNITS_S = {"ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
 _AMOUNT = (
     r"\d+(?:\.\d+)?\s*(?:milliseconds?|msecs?|ms|seconds?|secs?|s|minutes?|mins?|m|hours?|hrs?|h|days?|d)(?![a-z])"
@@ -40,7 +46,7 @@ _MARKUP = re.compile(r"<(script|style)\b.*?</\1\s*>|<!--.*?-->|<[^<>]*>", re.DOT
 
 def told(body: bytes) -> object:
     """The body as JSON, or else its text, without the markup of a page."""
-    text = body.decode(errors="replace").strip()
+    text = body.decode(errors="replace").strip().removeprefix("data:").strip()  # of a stream's event
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
@@ -90,7 +96,32 @@ def pause_asked_s(headers: Mapping[str, str], body: object) -> float | None:
     stated = next((each for each in told_s if each is not None), None)
     if stated is None and (words := _IN_WORDS.search(reason(body))):
         return _length(words[1])
+    if stated is None:
+        return max((pause_s for each in (headers, *_headers(body)) for pause_s in _resets(each)), default=None)
     return stated
+
+
+def _headers(body: object, depth: int = 0) -> Iterator[Mapping[str, str]]:
+    """Headers of a provider behind the one that was asked, which its answer repeats."""
+    for name, value in body.items() if isinstance(body, dict) and depth < 8 else ():
+        if name == "headers" and isinstance(value, dict):
+            yield {str(each).lower(): str(said) for each, said in value.items()}
+        else:
+            yield from _headers(value, depth + 1)
+
+
+def _resets(headers: Mapping[str, str]) -> Iterator[float]:
+    """The pauses until limits begin anew, of those that are used up or do not say what is left."""
+    for name, value in headers.items():
+        left = headers.get(name.replace("reset", "remaining"), "0")
+        if name.lower() == "ratelimit":
+            yield from map(float, _DRAFT.findall(value))
+        elif _RESET.fullmatch(name) and left.strip() in ("0", "0.0"):
+            pause_s = _seconds(value, 1.0, headers.get("date", ""))
+            if pause_s is not None and pause_s > SINCE_1970_S:
+                pause_s = max(0.0, (pause_s / 1000 if pause_s > 1000 * SINCE_1970_S else pause_s) - time.time())
+            if pause_s is not None:
+                yield pause_s
 
 
 def _asked(body: object, depth: int = 0) -> Iterator[float | None]:

@@ -18,7 +18,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from automotive_cosim.traffic.posted import clauses, is_understood
+from automotive_cosim.traffic.posted_limits import clauses, is_understood
 
 KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
 """Access keys that are about cars, the most specific first."""

@@ -17,7 +17,7 @@ from automotive_cosim.osm.lanes import COUNTED, built_of
 from automotive_cosim.osm.limits import CYCLE_ZONES, WALKING_ZONES, Zone, zones_of
 from automotive_cosim.osm.oneway import directions
 from automotive_cosim.traffic.network import class_of
-from automotive_cosim.traffic.posted import WALK_KMH
+from automotive_cosim.traffic.posted_limits import WALK_KMH
 
 AS_OF = datetime(2026, 11, 1, 12, tzinfo=UTC)
 """The day whose law fills the gaps."""

@@ -14,7 +14,7 @@ from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.osm.signs import PRIORITY_ROAD, kind_of
 from automotive_cosim.osm.unread import unread
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.posted import clauses, names_holidays, timed_limits
+from automotive_cosim.traffic.posted_limits import clauses, names_holidays, timed_limits
 
 SHOWN = 10
 """How many OSM numbers a line names where people read it; ``import.json`` has all."""

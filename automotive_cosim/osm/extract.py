@@ -25,9 +25,9 @@ from automotive_cosim.formats.files import is_utf8, open_file, opened
 from automotive_cosim.formats.limited import read_limited
 from automotive_cosim.formats.writing import drafted
 from automotive_cosim.formats.xml import scan
-from automotive_cosim.osm import ground
+from automotive_cosim.osm import land_cover
 from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.ground import MappedArea
+from automotive_cosim.osm.land_cover import MappedArea
 from automotive_cosim.osm.oneway import directions
 from automotive_cosim.osm.overpass_json import COUNTS, OverpassJson, is_json, refuse_broken_off
 from automotive_cosim.osm.shores import closed_water, cut_water
@@ -219,7 +219,7 @@ def _read(source: Path) -> Extract:
         {ref: node for ref, node in sorted(nodes.items()) if ref in used},
         tuple(sorted(filter(_is_restriction, relations), key=lambda turn: turn.relation_id)),
         tuple(_watching(cameras, relations, nodes, {way.way_id: way for way in ways})),
-        ground.in_order(areas),
+        land_cover.in_order(areas),
         tuple(way for way, there in zip(complete, is_open, strict=True) if not there),
         told,
         {ref: node for ref, node in tagged.items() if ref not in used and ref not in cameras},
@@ -371,13 +371,13 @@ def _read_json(source: Path) -> _Parts:
         MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
     )
     in_json = ("water in JSON, left out", "relation")
-    water = [(in_json, ref) for ref, tags, _ in read.relations() if ground.kind_of(tags) is GroundKind.WATER]
+    water = [(in_json, ref) for ref, tags, _ in read.relations() if land_cover.kind_of(tags) is GroundKind.WATER]
     return ways, relations, dict(sorted(nodes.items())), tagged, tuple(areas), others, water
 
 
 def _ground_of(tags: Mapping[str, str], refs: tuple[int, ...]) -> GroundKind | None:
     """What a way is the outline of; None if it is none."""
-    return ground.kind_of(tags) if len(refs) > 3 and refs[0] == refs[-1] else None
+    return land_cover.kind_of(tags) if len(refs) > 3 and refs[0] == refs[-1] else None
 
 
 def _osmium() -> Any:
@@ -417,11 +417,14 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
         nonlocal version, within
+        if name in ("tag", "nd"):  # most of the elements
+            version = "" if name == "nd" and within == "relation" else version
+            return
         if name in ("osm", "osmChange"):
             version = attributes.get("version", "")
         elif name in ("node", "way", "relation"):
             within = name
-        elif name == "center" or (name == "bounds" and within) or (name == "nd" and within == "relation"):
+        elif name == "center" or (name == "bounds" and within):
             version = ""
         elif name == "count":
             raise ImportMapError(f"{source} {COUNTS}")
@@ -565,10 +568,10 @@ def _read_ground(file: Any, roads: list[list[Position]], told: _Listed) -> Itera
     """Areas of closed ways and of multipolygons; of those that the extract cuts, only water (``shores``)."""
     osmium = _osmium()
     whole: set[tuple[str, int]] = set()
-    tagged = osmium.filter.KeyFilter(*ground.KEYS)
+    tagged = osmium.filter.KeyFilter(*land_cover.KEYS)
     areas = osmium.FileProcessor(file).with_areas(tagged).with_filter(tagged)
     for area in areas.with_filter(osmium.filter.EntityFilter(osmium.osm.AREA)):
-        kind = ground.kind_of({tag.k: tag.v for tag in area.tags})
+        kind = land_cover.kind_of({tag.k: tag.v for tag in area.tags})
         if kind is None:
             continue
         if area.num_rings()[0]:
@@ -598,14 +601,14 @@ class _Water(NamedTuple):
 
 def _waters(osmium: Any, file: Any) -> Iterator[_Water]:
     """Closed ways and multipolygons of water, and all coastlines."""
-    values = [(key, value) for key, words in ground.TAGS[GroundKind.WATER].items() for value in words]
+    values = [(key, value) for key, words in land_cover.TAGS[GroundKind.WATER].items() for value in words]
     tagged = osmium.filter.TagFilter(*values, ("natural", "coastline"))
     coast: list[int] = []
     for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(tagged):
         tags = {tag.k: tag.v for tag in item.tags}
         if tags.get("natural") == "coastline" and item.is_way():
             coast.append(item.id)
-        elif ground.kind_of(tags) is not GroundKind.WATER:
+        elif land_cover.kind_of(tags) is not GroundKind.WATER:
             continue
         elif item.is_relation() and tags.get("type") in ("multipolygon", "boundary"):
             ways = sorted((member.role == "inner", member.ref) for member in item.members if member.type == "w")

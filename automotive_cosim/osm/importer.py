@@ -15,7 +15,7 @@ from automotive_cosim.contracts import Tell
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import Place, shipped
-from automotive_cosim.osm import demand, extract, folder, ground, network, trips
+from automotive_cosim.osm import demand, extract, folder, land_cover, network, trips
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.demand import Demand, Journey
 from automotive_cosim.osm.doubts import shortened
@@ -108,9 +108,9 @@ def import_map(
         net = building / f"{options.name}.net.xml.gz"
         built = network.convert(mapped, roads, net, options.country, building.parent, tell)
         tell("drawing the ground around it", None)
-        around = ground.draw(mapped.ground, built.network.map)
+        around = land_cover.draw(mapped.ground, built.network.map)
         if around.areas:
-            ground.write(around.areas, building / _ground(options))
+            land_cover.write(around.areas, building / _ground(options))
         tell("drawing trips", None)
         rng = np.random.default_rng(options.seed)
         drawn = demand.draw(

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from automotive_cosim.osm.country import KMH_PER_MPH, country_codes
-from automotive_cosim.traffic.posted import WALK_KMH
+from automotive_cosim.traffic.posted_limits import WALK_KMH
 
 LEAST_KMH, MOST_KMH, MOST_MPH = 3.0, 160.0, 85.0
 """The lowest and the highest limit that any country posts: walking pace; the United Arab Emirates; Texas."""

@@ -23,7 +23,7 @@ from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
 from automotive_cosim.osm.signs import STOP, Joints, MappedSigns, dark, followed, patches, read_signs
 from automotive_cosim.osm.turns import Ban, BannedTurns, read_turns
 from automotive_cosim.traffic.network import DERESTRICTED_MPS, SIGN, TIMED_TURN, Edge, Network, read_network
-from automotive_cosim.traffic.posted import sign_mps
+from automotive_cosim.traffic.posted_limits import sign_mps
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
 
 GEOMETRY = (

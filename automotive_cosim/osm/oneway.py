@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from automotive_cosim.osm import access
-from automotive_cosim.traffic.posted import clauses, is_understood
+from automotive_cosim.traffic.posted_limits import clauses, is_understood
 
 KEYS = ("oneway:motorcar", "oneway:motor_vehicle", "oneway:vehicle", "oneway")
 

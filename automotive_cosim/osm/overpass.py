@@ -27,7 +27,7 @@ from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.formats.writing import copy, drafted
 from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.ground import TAGS
+from automotive_cosim.osm.land_cover import TAGS
 from automotive_cosim.osm.settings import DownloadLimits
 
 LARGEST_KM2 = 2500.0

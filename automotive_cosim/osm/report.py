@@ -18,7 +18,7 @@ from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.doubts import doubts, in_words, unconnected
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.folder import ATTRIBUTION
-from automotive_cosim.osm.ground import DrawnGround
+from automotive_cosim.osm.land_cover import DrawnGround
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge

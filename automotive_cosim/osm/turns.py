@@ -15,7 +15,7 @@ from automotive_cosim.osm.access import ALWAYS, OF_THE_VEHICLE, timed
 from automotive_cosim.osm.barriers import Piece
 from automotive_cosim.osm.extract import Relation
 from automotive_cosim.osm.oneway import Directions
-from automotive_cosim.traffic.posted import clauses, is_understood
+from automotive_cosim.traffic.posted_limits import clauses, is_understood
 
 CARS = ("motorcar", "motor_vehicle", "vehicle")
 """Kinds of vehicles that a car is one of, the most specific first."""

@@ -12,13 +12,12 @@ from pathlib import Path
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.proof.prover import GATES, Proof, Prover, proof_id
-from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.batch import BatchKind, Progress
 from automotive_cosim.run.executor import LoneJob, Runner
 from automotive_cosim.run.plan import choose
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.store import opened
+from automotive_cosim.run.store import Store
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.folder import digest
 
 PIECE = 12
 """Number of tasks of one simulation that a worker takes; each is also tried for residue of the one before."""
@@ -41,7 +40,7 @@ class ProofPlan:
             "tasks": list(self.tasks),
             "seeds": list(self.seeds),
             "gates": [gate for gate in GATES if gate in self.gates],
-            "task_files": digest(),
+            "task_files": CATALOGUE.digest(),
         }
 
     def check(self) -> None:
@@ -124,25 +123,25 @@ def prove(
         InfrastructureError: no worker becomes available.
         KeyboardInterrupt: passed on; only the running proofs are lost.
     """
-    plan = ProofPlan(tuple(tasks), tuple(seeds), tuple(chosen))
-    plan.check()
-    jobs = plan.jobs()
-    with (
-        tempfile.TemporaryDirectory(prefix="automotive-cosim-proof-") as scratch,
-        opened(out or Path(scratch), plan.as_json(), Proof, parts=()) as store,
-    ):
+    found: list[Proof] = []
+
+    def rounds(plan: ProofPlan, store: Store[Proof]) -> Iterator[Sequence[ProofJob]]:
+        jobs = plan.jobs()
         begun(len(jobs))
-
-        def heard(progress: Progress[Proof]) -> None:
-            if progress.ended is not None:
-                tell(progress.ended, progress.done, progress.planned)
-
         kept = [proof for job in jobs if (proof := store.rows.get(job.id)) and proof.error is None]
         for done, proof in enumerate(kept, start=1):
             tell(proof, done, len(jobs))
-        opener = partial(proofs, plan.gates)
-        run_jobs(jobs, store, opener, executor=Processes(workers), retries=1, tell=heard)
-        found = [store.rows[job.id] for job in jobs]
+        yield jobs
+        found.extend(store.rows[job.id] for job in jobs)
+
+    def heard(progress: Progress[Proof]) -> None:
+        if progress.ended is not None:
+            tell(progress.ended, progress.done, progress.planned)
+
+    plan = ProofPlan(tuple(tasks), tuple(seeds), tuple(chosen))
+    kind: BatchKind[ProofPlan, ProofJob, Proof] = BatchKind(Proof, partial(proofs, plan.gates), rounds=rounds)
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-proof-") as scratch:
+        kind.run(plan, out or Path(scratch), executor=Processes(workers), tell=heard)
     order = {task_id: number for number, task_id in enumerate(CATALOGUE)}
     return sorted(found, key=lambda proof: (order[proof.task], proof.seed))
 

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import TriggerNotReachedError
-from automotive_cosim.proof.ground import Ground
+from automotive_cosim.proof.hand_over import Ground
 from automotive_cosim.run.difficulty import RECORD, Difficulties, Difficulty, Outcomes, fingerprint, read, write
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import choose
@@ -127,9 +127,8 @@ def core(seen: OutcomesByHalf, fitted: Rasch, size: int = CORE_SIZE) -> tuple[st
     half. One after the other, the task is taken that raises the sum of the logarithms of the contestants'
     information most (Fisher's, p (1 - p) of a half), so that whoever is known least gains most.
     """
-    eligible = [
-        task for task in CATALOGUE.values() if all(_is_eligible(seen, f"{task.id}/{h}") for h in task.halves)
-    ]
+    tasks = [CATALOGUE[task_id] for task_id in _tasks(seen)]
+    eligible = [task for task in tasks if all(_is_eligible(seen, f"{task.id}/{h}") for h in task.halves)]
     abilities = np.array(list(fitted.abilities.values()))
     known = {}
     for task in eligible:
@@ -144,7 +143,13 @@ def core(seen: OutcomesByHalf, fitted: Rasch, size: int = CORE_SIZE) -> tuple[st
         total = total + known[best.id]
         left[best.suite, best.subset] -= 1
         chosen.append(best.id)
-    return tuple(task_id for task_id in CATALOGUE if task_id in chosen)
+    return tuple(task.id for task in tasks if task.id in chosen)
+
+
+def _tasks(seen: OutcomesByHalf) -> tuple[str, ...]:
+    """The ids of the tasks that were tried, in the order of the record, whatever the catalogue's is."""
+    found = dict.fromkeys(name.split("/")[0] for name in seen)
+    return tuple(task_id for task_id in found if task_id in CATALOGUE)
 
 
 def _is_eligible(seen: OutcomesByHalf, name: str) -> bool:
@@ -186,7 +191,7 @@ def agreement(seen: OutcomesByHalf, chosen: Sequence[str], draws: int = DRAWS, s
     """Compares success on some tasks with success on all; contestants that tried few halves are left out."""
     tried = Counter(name for outcomes in seen.values() for name in outcomes.won)
     who = sorted(name for name, halves in tried.items() if halves >= LEAST_SHARE * len(seen))
-    ids = [task_id for task_id in CATALOGUE if any(name.startswith(f"{task_id}/") for name in seen)]
+    ids = _tasks(seen)
     counts = np.zeros((len(ids), len(who), 2))
     for at, task_id in enumerate(ids):
         for half in CATALOGUE[task_id].halves:

@@ -13,7 +13,7 @@ from automotive_cosim.contracts.given import Interface, See
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import Actor
 from automotive_cosim.interface.functions import action_of, call_of
-from automotive_cosim.proof.ground import Ground, Played, finish
+from automotive_cosim.proof.hand_over import Ground, Played, finish
 
 
 def _play(ground: Ground, actor: Actor, *, stop_when_lost: bool = False) -> Played:

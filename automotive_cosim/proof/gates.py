@@ -67,10 +67,10 @@ from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violations
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
-from automotive_cosim.proof.ground import Ground, Played, Script, finish
+from automotive_cosim.proof.first_sight import undeclared
+from automotive_cosim.proof.hand_over import Ground, Played, Script, finish
 from automotive_cosim.proof.knowledge import DrawnValues, unknown
 from automotive_cosim.proof.place import mistagged
-from automotive_cosim.proof.sight import undeclared
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking.binding import rules_of
 from automotive_cosim.tasking.checks import AlertGiven, Check, NothingDone

@@ -16,7 +16,7 @@ from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.place import Atlas, Place, shipped
 from automotive_cosim.geo.rules import Jurisdiction, Rule, Status, Value
-from automotive_cosim.proof.ground import Ground
+from automotive_cosim.proof.hand_over import Ground
 from automotive_cosim.tasking.binding import UnmetNeedError, bound, rules_of
 from automotive_cosim.tasking.checks import AlertGiven, Check, SignalIs
 from automotive_cosim.tasking.task import Basis, Half

@@ -2,14 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib.resources import files
 
 from automotive_cosim.contracts.given import Interface
-from automotive_cosim.proof.ground import Ground, Played, finish
+from automotive_cosim.proof.hand_over import Ground, Played, finish
+from automotive_cosim.tasking import reading
+from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.parameters import bind
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
-from automotive_cosim.tasks.temptations import TEMPTATIONS, Temptation
+from automotive_cosim.tasks import CATALOGUE
+
+
+@dataclass(frozen=True, slots=True)
+class Temptation:
+    """A half of a task, and what breaks a house rule in it."""
+
+    task: str
+    half: str
+    moves: tuple[Move, ...]
+
+
+@cache
+def temptations() -> Mapping[str, Temptation]:
+    """Where the house rules are tempting to break (``tasks/temptations.toml``), by the id of the rule."""
+    text = files("automotive_cosim.tasks").joinpath("temptations.toml").read_text("utf-8")
+    found = {}
+    for rule, told in tomllib.loads(text).items():
+        task = CATALOGUE[told["task"]]
+        if "slip" in told:
+            taken = task.half(told["half"]).slips[told["slip"]]
+        elif "as_in" in told:
+            taken = task.half(told["as_in"]).moves
+        else:
+            taken = reading.moves(told["moves"])
+        found[rule] = Temptation(task.id, told["half"], taken)
+    return found
 
 
 def policy(ground: Ground) -> Iterator[str]:
@@ -17,7 +48,7 @@ def policy(ground: Ground) -> Iterator[str]:
     verdict accepts may break a rule, such as one without a look-up."""
     for breach in broken(ground, ground.reference):
         yield f"the reference solution breaks the house rule {breach.rule} after {breach.at_s:g} s"
-    for rule, temptation in TEMPTATIONS.items():
+    for rule, temptation in temptations().items():
         if (temptation.task, temptation.half) == (ground.task.id, ground.half_name):
             played = tempted(ground, temptation)
             if played.stuck:

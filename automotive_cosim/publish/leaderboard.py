@@ -16,6 +16,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.limited import read_limited
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
@@ -162,8 +164,9 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
             if problems:
                 left_out.append(f"{path.name}: {counted(len(problems), 'problem')}, such as {problems[0]}")
             else:
-                entries += read_entries(path)
-                driven += read_driven(path)
+                read = read_limited(_contestants, path, bounds.BUNDLE, UserError)
+                entries += read[0]
+                driven += read[1]
         except UserError as error:
             left_out.append(str(error).replace(str(path), path.name))
     if not entries and not driven:
@@ -187,6 +190,11 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
     except OSError as error:
         raise cannot_write(out.parent, error) from error
     return made, left_out
+
+
+def _contestants(bundle: Path) -> tuple[list[BoardEntry], list[DrivenEntry]]:
+    """Runs in a process with limits."""
+    return read_entries(bundle), read_driven(bundle)
 
 
 def read_entries(bundle: Path) -> list[BoardEntry]:

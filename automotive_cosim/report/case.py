@@ -16,9 +16,9 @@ from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.results import Results
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.kept import pictures, shown
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.trial_folder import pictures, shown
 
 CONTROLS = ("none", "irrelevant", "wrong", "gps", "context")
 """Geo controls to compare with full geo-context, the clearest contrast first."""

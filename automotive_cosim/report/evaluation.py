@@ -28,9 +28,9 @@ from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.kept import pictures
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
+from automotive_cosim.run.trial_folder import pictures
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,8 +19,8 @@ from automotive_cosim.report.playback import open_picture
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.kept import read_steps, read_trial
 from automotive_cosim.run.row import from_json
+from automotive_cosim.run.trial_folder import read_steps, read_trial
 
 PARTS: Mapping[str, str] = {
     "goal": "Goal",

@@ -14,7 +14,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.layout import STEPS, screenshot
 from automotive_cosim.formats.writing import drafted
-from automotive_cosim.run.kept import read_steps
+from automotive_cosim.run.trial_folder import read_steps
 
 LAST_MS = 3000
 """How long an animation shows its last picture."""

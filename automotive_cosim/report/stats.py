@@ -266,10 +266,13 @@ def mean(values: Iterable[float | None]) -> float | None:
 
 
 def _bootstrap(sums: Sequence[Sequence[float]], seed: int) -> Interval | None:
-    """Percentile interval of sum over count when resampling whole clusters; None if all clusters agree."""
+    """As ``bootstrap``; None if all clusters agree."""
+    return bootstrap(sums, seed) if len({total / count for total, count in sums}) > 1 else None
+
+
+def bootstrap(sums: Sequence[Sequence[float]], seed: int) -> Interval:
+    """Percentile interval of sum over count, of both for each cluster, when resampling whole clusters."""
     table = np.asarray(sums, dtype=float)
-    if np.ptp(table[:, 0] / table[:, 1]) == 0:
-        return None
     rng = np.random.default_rng(seed)
     drawn = table[rng.integers(len(table), size=(DRAWS, len(table)))].sum(axis=1)
     tail = 50 * (1 - CONFIDENCE)

@@ -10,6 +10,7 @@ import json
 import time
 from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -18,18 +19,20 @@ from typing import Any, Generic, Protocol, TypeVar
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
 from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run import worker
-from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker, failed
-from automotive_cosim.run.meter import MeterHandle, Spent
-from automotive_cosim.run.pace import JobTurn, Pace
+from automotive_cosim.run.budget import MeterHandle, Spent
+from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Runner, Worker, failed
+from automotive_cosim.run.jobs import TrialJob
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue, SimulationKey
 from automotive_cosim.run.row import JobRow, from_json
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.settings import Budget, Pictures
-from automotive_cosim.run.store import Store, cannot_write, opened
+from automotive_cosim.run.store import RowKind, Store, cannot_write, opened
+from automotive_cosim.run.time_left import JobTurn, Pace
 from automotive_cosim.run.trial_row import TrialRow
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
@@ -73,11 +76,54 @@ class Progress(Generic[R]):
 class BatchPlan(Protocol):
     """What a batch runs; ``check`` raises a UserError for what does not exist or is out of range."""
 
-    def check(self) -> None: ...
+    def check(self) -> object: ...
 
     def as_json(self) -> Json: ...
 
     def jobs(self) -> Sequence[Any]: ...
+
+
+P = TypeVar("P", bound=BatchPlan)
+
+
+@dataclass(frozen=True, slots=True)
+class BatchKind(Generic[P, J, R]):
+    """A kind of batch: what its workers do, and what comes of it."""
+
+    row: RowKind[R]
+    """Kind of its rows."""
+    opener: Callable[..., AbstractContextManager[Runner[J, R]]]
+    """Makes the runner of each worker, if it asks models, from the meter that they share."""
+    parts: tuple[str, ...] = ()
+    """Folders in its results folder."""
+    asks_models: bool = False
+    rounds: Callable[[P, Store[R]], Iterator[Sequence[J]]] = lambda plan, store: iter([plan.jobs()])
+    """The jobs to run, and then, by what came of them, more."""
+
+    def run(
+        self,
+        plan: P,
+        folder: Path,
+        *,
+        executor: Executor = Processes(),  # noqa: B008, frozen
+        retries: int = 1,
+        budget: Budget = Budget(),  # noqa: B008, frozen
+        tell: Callable[[Progress[R]], None] = lambda progress: None,
+    ) -> Progress[R]:
+        """Runs the remaining jobs of a plan; arguments and errors are those of ``run_plan``."""
+        plan.check()
+        planned = len(plan.jobs())
+        with (
+            opened(folder, plan.as_json(), self.row, self.parts, planned=planned) as store,
+            executor.metered(budget, spent_before(store)) if self.asks_models else nullcontext() as meter,
+        ):
+            opener = self.opener if meter is None else partial(self.opener, meter)
+            limit = meter if budget.is_limited else None
+            for jobs in self.rounds(plan, store):
+                end = run_jobs(
+                    jobs, store, opener, executor=executor, retries=retries, limit=limit, budget=budget, tell=tell
+                )
+        return end
 
 
 def run_plan(
@@ -95,7 +141,7 @@ def run_plan(
     Args:
         plan: what to run.
         folder: results folder, new or to be resumed.
-        executor: where to run it.
+        executor: where to run it; the results do not depend on it.
         retries: how many times a trial is retried after an infrastructure error before the error is recorded.
         pictures: which screenshots to keep.
         budget: what it may spend on its models, with all earlier starts. Once it is spent, the rest is not run.
@@ -106,50 +152,10 @@ def run_plan(
         InfrastructureError: no worker becomes available.
         KeyboardInterrupt: passed on; only the running trials are lost.
     """
-    plan.check()
-    jobs = plan.jobs()
-    with (
-        opened(folder, plan.as_json(), kind_of, planned=len(jobs)) as store,
-        executor.metered(budget, spent_before(store)) as meter,
-    ):
-        opener = partial(worker.trials, pictures, meter)
-        limit = meter if budget.is_limited else None
-        return run_jobs(
-            jobs, store, opener, executor=executor, retries=retries, limit=limit, budget=budget, tell=tell
-        )
-
-
-P = TypeVar("P", bound=BatchPlan)
-
-
-@dataclass(frozen=True, slots=True)
-class BatchKind(Generic[P, J, R]):
-    """A kind of batch besides that of an evaluation: what its workers do, and what comes of it."""
-
-    row: type[R]
-    """Kind of its rows."""
-    opener: Opener[J, R]
-    """Makes the runner of each worker."""
-    parts: tuple[str, ...] = ()
-    """Folders in its results folder."""
-    rounds: Callable[[P, Store[R]], Iterator[Sequence[J]]] = lambda plan, store: iter([plan.jobs()])
-    """The jobs to run, and then, by what came of them, more."""
-
-    def run(
-        self,
-        plan: P,
-        folder: Path,
-        *,
-        executor: Executor = Processes(),  # noqa: B008, frozen
-        retries: int = 1,
-        tell: Callable[[Progress[R]], None] = lambda progress: None,
-    ) -> Progress[R]:
-        """Runs the remaining jobs of a plan; arguments and errors are those of ``run_plan``."""
-        plan.check()
-        with opened(folder, plan.as_json(), self.row, self.parts) as store:
-            for jobs in self.rounds(plan, store):
-                end = run_jobs(jobs, store, self.opener, executor=executor, retries=retries, tell=tell)
-        return end
+    kind: BatchKind[Plan, TrialJob, TrialRow] = BatchKind(
+        kind_of, partial(worker.trials, pictures), (TRACES, PICTURES), asks_models=True
+    )
+    return kind.run(plan, folder, executor=executor, retries=retries, budget=budget, tell=tell)
 
 
 def run_jobs(

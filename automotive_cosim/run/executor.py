@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from automotive_cosim.errors import CosimError
-from automotive_cosim.run.meter import MeterHandle, Spent
+from automotive_cosim.run.budget import MeterHandle, Spent
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage

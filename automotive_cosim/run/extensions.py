@@ -1,25 +1,23 @@
-"""What extends the package, which knows nothing of it: a sub-package with a module ``extension``, that says in
-``EXTENSION`` which commands and which kinds of results folder it has.
+"""What extends the package, which knows nothing of it: a sub-package with a module ``extension``.
 
-An installation without the sub-package lacks these and nothing else.
+Its ``add_commands(app, groups)`` adds commands to the command line and to groups of it by their names. Its
+``KINDS`` are kinds of results folder, by the word under ``study`` in the plan of a manifest. An installation
+without the sub-package lacks these and nothing else.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import resolve_name
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-
-if TYPE_CHECKING:
-    import typer
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,22 +51,12 @@ class ResultsKind:
         return values
 
 
-@dataclass(frozen=True, slots=True)
-class Extension:
-    """What a sub-package adds."""
-
-    add_commands: Callable[[typer.Typer, Mapping[str, typer.Typer]], None]
-    """Adds its commands to the command line, and to groups of it by their names."""
-    kinds: Mapping[str, ResultsKind]
-    """By the word under ``study`` in the plan of a folder's manifest."""
-
-
 @cache
-def extensions() -> tuple[Extension, ...]:
-    """All that are installed."""
+def extensions() -> tuple[Any, ...]:
+    """The modules ``extension`` of all that are installed."""
     home = Path(automotive_cosim.__file__).parent
     names = sorted(path.parent.name for path in home.glob("*/extension.py"))
-    return tuple(import_module(f"{automotive_cosim.__name__}.{name}.extension").EXTENSION for name in names)
+    return tuple(import_module(f"{automotive_cosim.__name__}.{name}.extension") for name in names)
 
 
 def kind_of(plan: Mapping[str, Any]) -> ResultsKind | None:
@@ -80,6 +68,7 @@ def kind_of(plan: Mapping[str, Any]) -> ResultsKind | None:
     if "study" not in plan:
         return None
     for each in extensions():
-        if plan["study"] in each.kinds:
-            return each.kinds[plan["study"]]
+        if plan["study"] in each.KINDS:
+            kind: ResultsKind = each.KINDS[plan["study"]]
+            return kind
     raise UserError(f"the folder has a study of kind {plan['study']!r}, which this installation cannot read")

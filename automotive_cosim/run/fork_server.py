@@ -10,7 +10,7 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-from automotive_cosim.agents.leftovers import SWEEP_S, children, end_all, strangers, take_orphans, tree
+from automotive_cosim.agents.cleanup import SWEEP_S, children, end_all, strangers, take_orphans, tree
 from automotive_cosim.agents.process import AgentRequest
 from automotive_cosim.agents.wire import GoneError, Wire
 from automotive_cosim.errors import InfrastructureError

@@ -20,7 +20,7 @@ from statistics import median
 from time import perf_counter
 from typing import Any
 
-from automotive_cosim.agents.leftovers import tree
+from automotive_cosim.agents.cleanup import tree
 from automotive_cosim.contracts import Action, ActionType, Json
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import TrafficError

@@ -17,8 +17,8 @@ from typing import Any, Generic
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
+from automotive_cosim.run.budget import Meter, MeterHandle, Spent
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
-from automotive_cosim.run.meter import Meter, MeterHandle, Spent
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage
 from automotive_cosim.run.store import keep_files, stamp

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from automotive_cosim.agents import MODELLED, AgentSettings, Stage, StageName, is_remote, model_of
-from automotive_cosim.agents.leftovers import remove
+from automotive_cosim.agents.cleanup import remove
 from automotive_cosim.agents.process import AgentRequest
 from automotive_cosim.agents.wire import GoneError, Wire, packed
 from automotive_cosim.cockpit.actions import parse

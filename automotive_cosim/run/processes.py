@@ -14,9 +14,9 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic
 
-from automotive_cosim.agents.leftovers import children, end_all, strangers, take_orphans
+from automotive_cosim.agents.cleanup import children, end_all, strangers, take_orphans
+from automotive_cosim.run.budget import Meter, MeterHandle, Spent, served
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
-from automotive_cosim.run.meter import Meter, MeterHandle, Spent, served
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage, telling
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 PRELOADED = ["automotive_cosim.agents", "pydantic"]
 """What workers have from the process that they are forked from: most of what they import, but nothing that depends
-on the environment, as the catalogue does (``tasks.folder``)."""
+on the environment, as the catalogue does (``tasking.own_files``)."""
 
 ORPHANS_S = 3.0
 """Wall time in which the agents' processes of a killed worker have to end by themselves."""

@@ -41,10 +41,10 @@ from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.drive import DriveRecord
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup
 from automotive_cosim.run.jobs import EpisodeJob, TrialJob
-from automotive_cosim.run.kept import target
 from automotive_cosim.run.moments import JudgeInput
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.trial_folder import target
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import STAMPED, installed
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from automotive_cosim.drives.score import Score
 from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.formats.limited import LimitedProcesses
 from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
@@ -58,15 +59,27 @@ def regrade(folder: Path) -> Iterator[Regraded]:
     """
     read_evaluation(folder)
     rows = read_trials(folder)
-    for name in sorted(rows):
-        row = rows[name]
-        try:
-            if isinstance(row, DriveTrialRow) and row.score is not None:
-                yield Regraded(name, row.has_succeeded, *_drive_again(folder, row, row.score))
-            elif isinstance(row, EpisodeRow) and row.parts is not None:
-                yield Regraded(name, row.has_succeeded, *_again(folder, row, row.parts))
-        except CosimError as error:
-            yield Regraded(name, row.has_succeeded, None, problem=str(error))
+    with LimitedProcesses(folder) as processes:
+        for name in sorted(rows):
+            try:
+                judged = processes.call(_regraded, folder, rows[name])
+            except CosimError as error:
+                judged = Regraded(name, rows[name].has_succeeded, None, problem=str(error))
+            if judged is not None:
+                yield judged
+
+
+def _regraded(folder: Path, row: EpisodeRow | DriveTrialRow) -> Regraded | None:
+    """One trial, judged again in a process with limits: its moments may be anybody's. None without a verdict.
+
+    Raises:
+        CosimError: it cannot be judged.
+    """
+    if isinstance(row, DriveTrialRow) and row.score is not None:
+        return Regraded(row.id, row.has_succeeded, *_drive_again(folder, row, row.score))
+    if isinstance(row, EpisodeRow) and row.parts is not None:
+        return Regraded(row.id, row.has_succeeded, *_again(folder, row, row.parts))
+    return None
 
 
 def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:

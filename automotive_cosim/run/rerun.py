@@ -36,12 +36,12 @@ from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup, read_setup, run_episode
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
-from automotive_cosim.run.kept import is_trial, read_steps, read_trial
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.record import TrialRecord
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.run.store import read_evaluation, read_trace
+from automotive_cosim.run.trial_folder import is_trial, read_steps, read_trial
 from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations
 

@@ -77,7 +77,7 @@ def opened(
         plan: the plan; a folder that was started with a different one is refused.
         kind: kind of its rows.
         parts: folders in it.
-        planned: how many jobs the plan has, for the manifest of an evaluation.
+        planned: how many jobs the plan has, for the manifest.
         grows: the plan may differ from the earlier one, for runs that are not known in advance; see ``replan``.
 
     Raises:

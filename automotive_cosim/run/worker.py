@@ -11,12 +11,12 @@ from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
 from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.formats.layout import PICTURES
 from automotive_cosim.formats.writing import beneath
+from automotive_cosim.run.budget import Metered, MeterHandle
 from automotive_cosim.run.drive import run_drive
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.executor import Runner, failed_by
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import DriveJob, Limits, TrialJob
-from automotive_cosim.run.meter import Metered, MeterHandle
 from automotive_cosim.run.moments import write_judged
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.record import AnyTrialObserver, Recorder

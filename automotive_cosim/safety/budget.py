@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.meter import MeterHandle, Spent
+from automotive_cosim.run.budget import MeterHandle, Spent
 
 LAID = 1024
 """Points that are laid out if their number is not limited."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from math import exp, log
+from math import exp, isfinite, log
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,6 +15,7 @@ from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import Document, read_toml
 from automotive_cosim.run.plan import choose, families_named
 
@@ -276,20 +277,17 @@ def _factor(document: Document, name: str, given: Any) -> Factor:
             values = [str(value) if isinstance(value, str) else value for value in values]
     except UserError as error:
         raise document.refused(steps, f"has a value that does not exist: {error}") from error
-    distinct = tuple(dict.fromkeys(values))
-    if not distinct or not all(isinstance(value, str | int | float) for value in distinct):
+    if not values or not all(map(_is_level, values)):
         raise document.refused(steps, "is neither a list of values nor { least, most }; give one of the two")
-    return FactorChoices(name, distinct)
+    return FactorChoices(name, tuple(dict.fromkeys(values)))
+
+
+def _is_level(value: object) -> bool:
+    return isinstance(value, str) or (isinstance(value, int | float) and isfinite(value))
 
 
 def _range(document: Document, steps: tuple[str, str], name: str, given: dict[str, Any]) -> FactorRange:
-    unknown = sorted(set(given) - {entry.name for entry in fields(_RangeTable)})
-    numbers = [given.get(key) for key in ("least", "most")]
-    if unknown or not all(isinstance(each, int | float) for each in numbers):
-        raise document.refused(
-            steps, "has no numbers least and most, or a field besides nominal, whole, logarithmic"
-        )
-    made = _RangeTable(**given)
+    made = checked(_RangeTable, given, lambda inner: document.place((*steps, *inner)), document.error)
     default = next((each.default for each in TABLE if each.name == name), made.least)
     nominal = float(default if made.nominal is None else made.nominal)
     if not made.least < made.most or (made.logarithmic and made.least <= 0):

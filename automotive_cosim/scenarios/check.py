@@ -23,7 +23,7 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference, middle
 from automotive_cosim.traffic.network import Edge, Network
-from automotive_cosim.traffic.posted import in_force, sign_mps
+from automotive_cosim.traffic.posted_limits import in_force, sign_mps
 from automotive_cosim.traffic.stability import measure
 from automotive_cosim.traffic.ways import way_through
 

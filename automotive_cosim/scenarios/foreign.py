@@ -16,11 +16,13 @@ from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, WeatherAt
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.scenarios.relocation import zone_of
 from automotive_cosim.scenarios.routes import drawn_trips
+from automotive_cosim.traffic.additional import read_mapped
+from automotive_cosim.traffic.file_check import vet
 from automotive_cosim.traffic.georeference import middle
-from automotive_cosim.traffic.ground import read_mapped
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import (
     INPUTS,
+    INTERNAL,
     QUIET,
     REROUTING,
     SUMO_STEP_S,
@@ -29,7 +31,6 @@ from automotive_cosim.traffic.options import (
     stated_and_set,
 )
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
-from automotive_cosim.traffic.vetting import vet
 
 DAY = datetime(2026, 6, 16)
 """A Tuesday in June; SUMO's files have no date."""
@@ -48,6 +49,9 @@ RANDOM_PER_KM_H = 15.0
 
 FAIR = Weather(20.0, 55.0, 0.0, 1, 25.0, 20_000.0, 10.0)
 """The weather if the place, and so the climate, is unknown."""
+
+DIFFERS = "so figures differ from SUMO's"
+"""In a note about what cannot be kept; ``difference`` measures its size."""
 
 TRAVELLERS = frozenset(["vehicle", "trip", "flow"])
 """Elements of an additional file that are traffic."""
@@ -137,13 +141,14 @@ def _kept_and_not(configuration: Configuration, sumo: Sumo, network: Network) ->
             bool(each.timed_limits or each.timed_access or each.timed_turns) for each in network.edges.values()
         )
         other += [f"the hours of limits and closures on {hours} edges"] * bool(hours)
-        but = f", but for {', '.join(other)}, so figures differ from SUMO's" if other else ""
+        other += [f"{INTERNAL}, which is left out"] * (INTERNAL in configuration.ignored)
+        but = f", but for {', '.join(other)}, {DIFFERS}" if other else ""
         yield (
             f"{name} runs as `sumo -c` runs it with the run's seed{but}; an ego is one car more from its departure "
             "on, and a drive's weather slows everybody"
         )
     yield from set_aside(configuration)
-    if ignored := [option for option in configuration.ignored if option not in QUIET]:
+    if ignored := [option for option in configuration.ignored if option not in (*QUIET, INTERNAL)]:
         yield f"{name} runs without its {', '.join(ignored)}"
 
 

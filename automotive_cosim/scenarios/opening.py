@@ -12,7 +12,7 @@ from automotive_cosim.scenarios.foreign import foreign_scenario, set_aside
 from automotive_cosim.scenarios.reader import load
 from automotive_cosim.scenarios.relocation import at_home, relocated
 from automotive_cosim.scenarios.routes import chosen_trips
-from automotive_cosim.traffic.ground import placed, read_mapped
+from automotive_cosim.traffic.additional import placed, read_mapped
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.options import read_configuration
 

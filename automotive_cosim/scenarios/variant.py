@@ -15,8 +15,8 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds, files
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.writing import appearing, copy, make_folder, write_whole
+from automotive_cosim.traffic.file_check import files_in
 from automotive_cosim.traffic.options import Configuration
-from automotive_cosim.traffic.vetting import files_in
 
 NOT_TAKEN = re.compile(rb"<(stop|person|personFlow|container|containerFlow|ride|walk)[\s/>]")
 """Elements of a demand that a copy cannot take over."""

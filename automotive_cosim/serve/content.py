@@ -20,11 +20,11 @@ from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.extensions import kind_of
-from automotive_cosim.run.kept import READ, is_trial, read_steps, read_trial, trace_of
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, trace_file
+from automotive_cosim.run.trial_folder import READ, is_trial, read_steps, read_trial, trace_of
 from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve.observers import StudyObservers
 from automotive_cosim.serve.records import NotHereError, RecordEntry, RecordFolders

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, PAIR, PICTURES, screenshot
-from automotive_cosim.run import kept
+from automotive_cosim.run import trial_folder
 
 DEPTH = 3
 """How deep records are searched for below a given folder."""
@@ -84,7 +84,7 @@ class RecordFolders:
         """Id of the other run of a pair, to the one that knows its place; None where there is none."""
         known, withheld = PAIR
         other = entry.folder.with_name(withheld)
-        return _id(other) if entry.folder.name == known and kept.is_trial(other) else None
+        return _id(other) if entry.folder.name == known and trial_folder.is_trial(other) else None
 
     def file(self, entry: RecordEntry, *parts: str) -> Path:
         """A file of a record.
@@ -121,8 +121,8 @@ class RecordFolders:
         else:
             found = []
         for folder in found:
-            paths = [path for name in kept.READ if os.path.lexists(path := folder / name)]
-            paths += [trace for trace in [kept.trace_of(folder)] if trace is not None]
+            paths = [path for name in trial_folder.READ if os.path.lexists(path := folder / name)]
+            paths += [trace for trace in [trial_folder.trace_of(folder)] if trace is not None]
             if paths or (folder.is_dir() and folder is not entry.folder):
                 for path in paths:
                     self.file(entry, *path.relative_to(entry.folder).parts)
@@ -144,7 +144,7 @@ class RecordFolders:
 
 
 def _seek(folder: Path, depth: int) -> Iterator[RecordEntry]:
-    if kept.is_trial(folder):
+    if trial_folder.is_trial(folder):
         yield RecordEntry(_id(folder), folder, is_evaluation=False)
     elif all(_is_own(folder / name) for name in ("manifest.json", "episodes.jsonl")):
         yield RecordEntry(_id(folder), folder, is_evaluation=True)

@@ -10,10 +10,9 @@ commands     their commands
 extension    what the package is told of them
 
 settings     what can be set about a study
-content      what every study's folder holds
+content      what every study's folder holds, and the report of a whole network
 intervals    means with bootstrap intervals over seeds
 gridlock     whether the traffic still flows, or is excluded as gridlocked
-shown        the report of a study of a whole network
 versions     compares two runs of one study
 """
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import typer
 
-from automotive_cosim.run.extensions import Extension, ResultsKind
+from automotive_cosim.run.extensions import ResultsKind
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
 
 HOME = "automotive_cosim.studies"
@@ -24,14 +24,11 @@ def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
     groups["scenarios"].command("equilibrate")(equilibrate_scenario)
 
 
-EXTENSION = Extension(
-    add_commands,
-    {
-        RerouteSettings.kind: ResultsKind(
-            f"{HOME}.reroute.page:write_study",
-            {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
-        ),
-        CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion"),
-        DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days"),
-    },
-)
+KINDS = {
+    RerouteSettings.kind: ResultsKind(
+        f"{HOME}.reroute.page:write_study",
+        {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
+    ),
+    CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion"),
+    DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days"),
+}

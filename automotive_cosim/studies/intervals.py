@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from automotive_cosim.errors import SetupError, install_hint
-from automotive_cosim.report.stats import CONFIDENCE, DRAWS, Interval
+from automotive_cosim.report.stats import CONFIDENCE, Interval, bootstrap
 
 LEAST_SEEDS = 10
 """Minimum number of seeds for an interval."""
@@ -49,7 +49,13 @@ def seed_mean(values: Iterable[tuple[int, float]], seed: int = 0) -> SeedMean | 
     mean = sum(map(sum, groups)) / count
     if len(groups) < LEAST_SEEDS:
         return SeedMean(mean, None, None, count, len(groups))
-    return SeedMean(mean, _clustered(groups), _bootstrap(groups, seed), count, len(groups))
+    return SeedMean(
+        mean,
+        _clustered(groups),
+        bootstrap([(sum(group), len(group)) for group in groups], seed),
+        count,
+        len(groups),
+    )
 
 
 def _clustered(groups: Sequence[Sequence[float]]) -> Interval:
@@ -77,13 +83,3 @@ def _clustered(groups: Sequence[Sequence[float]]) -> Interval:
     freedom = np.trace(spread) ** 2 / np.sum(spread * spread)
     reach = stdtrit(freedom, (1 + CONFIDENCE) / 2) * error
     return Interval(float(mean - reach), float(mean + reach))
-
-
-def _bootstrap(groups: Sequence[Sequence[float]], seed: int) -> Interval:
-    """Percentile interval of the mean over decisions when resampling whole seeds."""
-    sums = np.array([[sum(group), len(group)] for group in groups], dtype=float)
-    picked = np.random.default_rng(seed).integers(len(groups), size=(DRAWS, len(groups)))
-    drawn = sums[picked].sum(axis=1)
-    tail = 50 * (1 - CONFIDENCE)
-    low, high = np.percentile(drawn[:, 0] / drawn[:, 1], [tail, 100 - tail])
-    return Interval(float(low), float(high))

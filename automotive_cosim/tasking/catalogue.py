@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import hashlib
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
 from typing import Any
 
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.xml import without_collection
 from automotive_cosim.tasking.instance import instances
+from automotive_cosim.tasking.own_files import VARIABLE, line_of, own_files, shipped_files, shipped_tasks, tasks_of
 from automotive_cosim.tasking.parameters import FromCockpit, names
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Differs, Task
@@ -15,8 +21,20 @@ from automotive_cosim.tasking.task import Differs, Task
 class Catalogue(Mapping[str, Task]):
     """Tasks by id; a duplicate or invalid one is refused when it is added."""
 
-    def __init__(self) -> None:
-        self._tasks: dict[str, Task] = {}
+    def __init__(self, folder: Path | None = None) -> None:
+        """Empty, or with the tasks of a folder and then the user's own (``VARIABLE``), read at the first use."""
+        self.folder = folder
+
+    @cached_property
+    def _tasks(self) -> dict[str, Task]:
+        found: dict[str, Task] = {}
+        if self.folder is not None:
+            with without_collection():
+                for path in shipped_files(self.folder):  # tests hold them to what is required of others
+                    found |= {task.id: task for task in shipped_tasks(path)}
+            if os.environ.get(VARIABLE):
+                _enter_own(found, Path(os.environ[VARIABLE]))
+        return found
 
     def add(self, *tasks: Task) -> None:
         """Adds tasks.
@@ -26,21 +44,24 @@ class Catalogue(Mapping[str, Task]):
                 known kind, a task has fewer than four phrasings, or uses a parameter that it does not declare; or
                 one of the hard suite does not say what it is hard by.
         """
-        for task in tasks:
-            if task.id in self._tasks:
-                raise ValueError(f"task {task.id!r} occurs twice in the catalogue")
-            if len(set(task.templates)) < 4:
-                raise ValueError(f"task {task.id!r} has {len(set(task.templates))} phrasings; it requires four")
-            lacking = sorted(names((task.templates, task.first, task.second)) - task.parameters.keys())
-            if lacking:
-                raise ValueError(f"task {task.id!r} uses parameters that it does not declare: {', '.join(lacking)}")
-            if task.dimension.is_safety and task.second is None:
-                raise ValueError(f"safety task {task.id!r} has no second half")
-            if task.second is not None and not task.difference:
-                raise ValueError(f"task {task.id!r} does not say what its second half changes")
-            _check_difference(task)
-            _check_ability(task)
-            self._tasks[task.id] = task
+        _enter(self._tasks, tasks)
+
+    def add_folder(self, folder: Path) -> None:
+        """Adds the tasks of every file of a folder, in the order of their names.
+
+        Raises:
+            UserError: no such folder, nothing in it, or a file that cannot be used: file, line and reason.
+        """
+        _enter_own(self._tasks, folder)
+
+    def digest(self) -> str:
+        """Digest of the files with the tasks and the user's own; it changes with any of them."""
+        own = sorted(self.folder.rglob("*.toml")) if self.folder else []
+        theirs = os.environ.get(VARIABLE)
+        found = hashlib.sha256()
+        for path in (*own, *(own_files(Path(theirs)) if theirs else ())):
+            found.update(path.name.encode() + path.read_bytes())
+        return found.hexdigest()[:12]
 
     def of(self, suite: Suite) -> tuple[Task, ...]:
         """The tasks of one suite, in order."""
@@ -60,6 +81,33 @@ class Catalogue(Mapping[str, Task]):
 
     def __len__(self) -> int:
         return len(self._tasks)
+
+
+def _enter(known: dict[str, Task], tasks: Iterable[Task]) -> None:
+    for task in tasks:
+        if task.id in known:
+            raise ValueError(f"task {task.id!r} occurs twice in the catalogue")
+        if len(set(task.templates)) < 4:
+            raise ValueError(f"task {task.id!r} has {len(set(task.templates))} phrasings; it requires four")
+        lacking = sorted(names((task.templates, task.first, task.second)) - task.parameters.keys())
+        if lacking:
+            raise ValueError(f"task {task.id!r} uses parameters that it does not declare: {', '.join(lacking)}")
+        if task.dimension.is_safety and task.second is None:
+            raise ValueError(f"safety task {task.id!r} has no second half")
+        if task.second is not None and not task.difference:
+            raise ValueError(f"task {task.id!r} does not say what its second half changes")
+        _check_difference(task)
+        _check_ability(task)
+        known[task.id] = task
+
+
+def _enter_own(known: dict[str, Task], folder: Path) -> None:
+    for path in own_files(folder):
+        for task in tasks_of(path):
+            try:
+                _enter(known, (task,))
+            except ValueError as error:
+                raise UserError(f"{path}, line {line_of(path, task.id)}: {error}") from error
 
 
 def _check_difference(task: Task) -> None:

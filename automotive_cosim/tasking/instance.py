@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from automotive_cosim.cockpit.aboard import Seat
 from automotive_cosim.cockpit.language import Language, said, word
+from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.contracts.text import Quantity
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.tasking.dialogue import Says, Topic

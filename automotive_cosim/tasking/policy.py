@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated_by
 from automotive_cosim.cockpit.calls import functions
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat, seated_by
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
-from automotive_cosim.cockpit.aboard import Occupant, Seat
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.belongings import NOTHING, Belongings
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.missing_parts import Lacking
+from automotive_cosim.cockpit.occupants import Occupant, Seat
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
 from automotive_cosim.errors import UnknownNameError

@@ -40,7 +40,7 @@ GENERAL = frozenset({
 })  # fmt: skip
 """Parts of a path that only say where the signal is filed."""
 FIELD_WORDS = ("Active", "Enabled", "Engaged", "On", "Position", "Mode", "Level", "Cooling", "SpeedSet")
-UNITS = {"percent": " %", "celsius": " °C", "degrees": "°"}
+UNITS = {"percent": " %", "Celsius": " °C", "degrees": "°"}
 NAMES = {
     "navigation.destination": "the destination",
     "navigation.onward": "the place after the destination",

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from automotive_cosim.traffic.detours import Detours, EdgePair
 from automotive_cosim.traffic.network import CARS, Network
-from automotive_cosim.traffic.posted import TimedAccess, is_open
+from automotive_cosim.traffic.posted_limits import TimedAccess, is_open
 from automotive_cosim.traffic.sumo import LibSumo
 
 

@@ -39,7 +39,7 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.xml import read_root, scan
 from automotive_cosim.traffic import georeference
 from automotive_cosim.traffic.naming import local_names
-from automotive_cosim.traffic.posted import TimedAccess, TimedLimit, timed_access, timed_limits
+from automotive_cosim.traffic.posted_limits import TimedAccess, TimedLimit, timed_access, timed_limits
 
 NO_LIMIT_FROM_MPS = 39.0
 """A lane at least this fast whose edge says that there is none has no limit: SUMO's OSM import writes 142 km/h."""

@@ -21,11 +21,11 @@ from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, Trip
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.formats.xml import read_root, scan
 from automotive_cosim.traffic import random_traffic
+from automotive_cosim.traffic.file_check import OTHER_EGO, copy_vetted, refuse_variables
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_network
 from automotive_cosim.traffic.redraw import redraw
 from automotive_cosim.traffic.sumo import EGO
-from automotive_cosim.traffic.vetting import OTHER_EGO, copy_vetted, refuse_variables
 from automotive_cosim.traffic.vocabulary import IGNORED, MESOSCOPIC, PARALLEL, REFUSED, TAKEN, WINDOW
 
 INPUTS = ("net-file", "route-files", "additional-files", "weight-files")
@@ -46,6 +46,9 @@ DEFAULTS = {
 """Options that keep traffic from locking up; a configuration may override them. SUMO's own experiments
 (``Scenario.as_stated``) do without."""
 
+AGAIN = ("device.rerouting.period", "device.rerouting.adaptation-steps")
+"""Those of them that let rerouting devices choose again and again; also set where a run is asked for devices."""
+
 QUIET = {
     "no-step-log": "true",
     "no-warnings": "true",
@@ -55,6 +58,7 @@ QUIET = {
 }
 
 ANY_ROUTE = "ignore-route-errors"
+INTERNAL = "no-internal-links"
 
 COLLISIONS = "collision.action"
 
@@ -233,7 +237,8 @@ class _Reader:
         if element in TAKEN:
             self._take(TAKEN[element], value, where)
         elif element in IGNORED or element in WINDOW:
-            self.ignored[IGNORED.get(element, element)] = None
+            if element != INTERNAL or value.lower() not in FALSE:
+                self.ignored[IGNORED.get(element, element)] = None
         elif element in PARALLEL:
             self.parallel[PARALLEL[element]] = None
         elif element == MESOSCOPIC:
@@ -400,6 +405,8 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
     for option, (stated, to_set) in stated_and_set(configuration, sumo).items():
         if stated != to_set:
             options[option] = f"{to_set:g}"
+            if option == REROUTING:  # whose devices choose once only, unless a period is stated
+                options = {name: DEFAULTS[name] for name in AGAIN} | options
     if sumo.action_step_length_s is not None:
         options["default.action-step-length"] = f"{max(sumo.step_length_s, sumo.action_step_length_s):g}"
     if sumo.lateral_resolution_m is not None:

@@ -20,6 +20,10 @@ FOR_ITS_ROUTE = 1
 """SUMO's lane change mode: as commanded, and where its route asks for another lane."""
 STANDS_MPS = 0.1
 """Who is slower stands."""
+ABOVE_LIMITS = 5.0
+"""A factor on limits that bind nobody: told a speed above the limit, SUMO 1.28's cars swing around it."""
+EQUAL = 0.01
+"""Values that differ by no more are equal."""
 NEAREST_S = 0.5
 """Seconds are counted from the ego's departure to the nearest whole one of the simulation."""
 
@@ -56,6 +60,8 @@ class _Watch:
         value = now_s if condition.what == "time" else self._value(car) if car else None
         if value is None:
             return False
+        if condition.equal:
+            return abs(value - condition.value) <= EQUAL
         return value < condition.value if condition.below else value > condition.value
 
     def _value(self, car: str) -> float | None:
@@ -147,6 +153,7 @@ class StagedVehicle(StagedIncident):
         self._begun_s = sumo.time() - incident.from_s
         sumo.vehicle.setSpeed(self._car, mps)
         if incident.keeps_lane:
+            sumo.set_speed_factor(self._car, ABOVE_LIMITS)
             sumo.vehicle.setLaneChangeMode(self._car, FOR_ITS_ROUTE)
         elif self._waiting:  # until it has done all, it changes the lane only when told
             sumo.vehicle.setLaneChangeMode(self._car, NO_LANE_CHANGE)

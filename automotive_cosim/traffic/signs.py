@@ -14,7 +14,7 @@ from datetime import datetime
 from automotive_cosim.contracts import LimitSource
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.traffic.network import DERESTRICTED_MPS, SLOWEST_MPS, Edge, Network
-from automotive_cosim.traffic.posted import TimedLimit, in_force
+from automotive_cosim.traffic.posted_limits import TimedLimit, in_force
 from automotive_cosim.traffic.sumo import LibSumo
 
 BEND_MPS = 0.1

@@ -41,6 +41,9 @@ they state."""
 BACKLOG_SHARE_LIMIT = 0.05
 """Maximum share of vehicles still waiting to enter at the end, among all that should have."""
 
+SUMMARY = {"summary-output": "stdout", "summary-output.period": "1"}
+"""Options by which ``summary`` is told of each second."""
+
 TELEPORT = "time-to-teleport"
 
 TELEPORTS_SHOWN = 3
@@ -203,8 +206,7 @@ def _options(copies: Copied, setup: Setup, end_s: float) -> list[str]:
     ours = {"end": f"{end_s:g}", TELEPORT: f"{LONGEST_WAIT_S:g}"}
     options = run_options(copies, setup) | {
         **({} if setup.scenario.as_stated else ours),  # its flows may be spaced out up to its own end
-        "summary-output": "stdout",
-        "summary-output.period": "1",
+        **SUMMARY,
         "no-warnings": "false",
         "emergencydecel.warning-threshold": "10",
     }
@@ -221,7 +223,7 @@ def summary(
 
     Args:
         config: the scenario's configuration, for error texts.
-        options: SUMO's, with ``--summary-output stdout`` among them.
+        options: SUMO's, with ``SUMMARY`` among them.
         scratch: the folder it runs in.
         warnings: receives what SUMO warned of, once it has ended.
 

@@ -19,7 +19,7 @@ from automotive_cosim.traffic.manoeuvres import (
     StagedEmergency,
 )
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.posted import Hours, TimedLimit
+from automotive_cosim.traffic.posted_limits import Hours, TimedLimit
 from automotive_cosim.traffic.scripted import StagedVehicle
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident

@@ -147,12 +147,14 @@ class LibSumo:
 
         Args:
             without: vehicles to leave out.
-            wants: those of which it is known how fast they want to drive.
+            wants: those of which it is known how fast they want to drive; who stops at a stop is left out.
         """
-        lane_of, speed = self.lane_of, self.speed
+        lane_of, speed, stops = self.lane_of, self.speed, self.vehicle.isStopped
         for vehicle in self.vehicle_ids():
             if vehicle not in without and (lane := lane_of(vehicle)):
-                yield lane, speed(vehicle), wants.get(vehicle, THE_LIMIT)
+                speed_mps, wanted = speed(vehicle), wants.get(vehicle)
+                if wanted is None or speed_mps or not stops(vehicle):
+                    yield lane, speed_mps, wanted or THE_LIMIT
 
     def has_device(self, vehicle: str, device: str) -> bool:
         """Whether a vehicle has a device."""

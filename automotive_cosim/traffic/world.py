@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import chdir
+from contextlib import chdir, suppress
 from dataclasses import replace
 from difflib import get_close_matches
 from itertools import pairwise
@@ -13,13 +13,13 @@ from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, RoadIncident, RoadSh
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.formats.incidents import Incident
 from automotive_cosim.formats.scenario import Scenario, Trip
+from automotive_cosim.traffic.additional import placed, read_mapped
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion, Free
 from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FASTEST_MPS, FOR_GOOD_S, Driver
-from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.incidents import Incidents
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
@@ -58,7 +58,8 @@ NOT_LIKE_CARS = frozenset(("bicycle", "scooter", "moped", "wheelchair", "bus", "
 by a timetable."""
 
 SEARCHING_TYPE = "automotive_cosim.search"
-"""A vehicle type that no vehicle has."""
+"""A vehicle type that no vehicle has. It neither deviates in speed nor carries a device, so that no search for it
+draws a random number."""
 
 INSERTION_LIMIT_S = 300.0
 """Limit of the simulated time that the ego waits for a gap to enter the traffic."""
@@ -106,6 +107,10 @@ class World:
         self._not_like_cars: set[str] = set()
         self._wants: dict[str, DesiredSpeed] = {}
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
+        self._sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
+        self._sumo.type.setVehicleClass(SEARCHING_TYPE, "passenger")
+        self._sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
+        self._sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
         # the recorded traces of scenarios with a scenario.toml have what calls to distributions made of them
         drawn = self._configuration.distributions if scenario.as_stated else None
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE), drawn)
@@ -189,17 +194,10 @@ class World:
 
     def prepare_copies(self) -> None:
         """Makes SUMO build its routers' tables of all edges, which copies of this process then share, and begin to
-        average the speeds by which its rerouting devices choose, whether or not a vehicle has one.
-
-        The type of the search neither deviates in speed nor carries a device, so no random number is drawn.
-        """
-        sumo = self._sumo
-        sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
-        sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
-        sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
+        average the speeds by which its rerouting devices choose, whether or not a vehicle has one."""
         edge = next(iter(self.network.edges))
         for mode in (LIMITS, AVERAGED):
-            sumo.find_route(edge, edge, SEARCHING_TYPE, NOW, mode)
+            self._sumo.find_route(edge, edge, SEARCHING_TYPE, NOW, mode)
 
     def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoDrive:
         """Inserts the ego and runs until it is on the road; ``beat`` is called after every step.
@@ -234,6 +232,8 @@ class World:
             raise NoRoomError(
                 f"the ego found no gap on {plan.trip.from_edge!r} in {INSERTION_LIMIT_S:.0f} s of simulated time"
             )
+        if self._sumo.route(EGO)[-1] != edges[-1]:  # a rerouter stands where it departs
+            self._sumo.set_route(EGO, edges)
         self._forecast = Forecast(plan.weather, self._sumo.time(), plan.settles_s)
         self._surface.put(self._forecast.read(self._sumo.time()))  # its first look is on the road of its weather
         self._sumo.set_parameter(EGO, "laneChangeModel.lcSpeedGain", f"{driver_profile.overtaking:g}")
@@ -394,9 +394,11 @@ class World:
                     f"that cars may use{_similar(edge_id, self.network.edges)}"
                 )
         edges: list[str] = [trip.from_edge]
+        # in recorded traces of scenarios with a scenario.toml, a random number is drawn for each search
+        kind = SEARCHING_TYPE if self._scenario.as_stated else "DEFAULT_VEHTYPE"
         for origin, goal in pairwise(stops):
             try:
-                found, why = self._sumo.find_route(origin, goal, "DEFAULT_VEHTYPE").edges, ""
+                found, why = self._sumo.find_route(origin, goal, kind).edges, ""
             except self._sumo.refusals as error:  # no car may set out there now
                 found, why = (), f" ({error})"
             if not found:
@@ -435,6 +437,8 @@ class _EgoRoad:
     def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
         self._pedals.apply()
         sampled = self._world.step()
+        with suppress(*self._sumo.refusals):
+            self._keep_goal()
         end, events = self._mishaps()
         events += self._world.happened
         self._steps += 1
@@ -465,6 +469,13 @@ class _EgoRoad:
 
     def shapes(self) -> RoadShapes:
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
+
+    def _keep_goal(self) -> None:
+        """Goes on to the destination where a rerouter of the scenario's has given the ego another one."""
+        planned, now = self._sensor.route.edge_ids, self._sumo.route(EGO)
+        here = now[self._sumo.route_index(EGO)]
+        if now[-1] != planned[-1] and here in planned:
+            self._sumo.set_route(EGO, planned[planned.index(here) :])
 
     def _go_on(self, round_: Round) -> tuple[Event, ...]:
         """Sets the next destination near the present one, if there is a way to it, and says so. From a place

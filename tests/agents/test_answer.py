@@ -1,6 +1,8 @@
 """Answers are read strictly first, then forgivingly, and never evaluated."""
 
 import json
+import time
+from contextlib import suppress
 
 import pytest
 from hypothesis import given
@@ -62,9 +64,13 @@ THOUGHTS = [
     *((f"<{name}>", f"</{name}>") for name in ("think", "thinking", "THINK", "thought", "reasoning", "seed:think")),
     *(
         (f"<{name}>", f"</{name}>")
-        for name in ("longcat_think", "mm:think", "reflection", "scratchpad", "analysis")
+        for name in ("longcat_think", "mm:think", "reflection", "scratchpad", "analysis", "antThinking", "cot")
     ),
     ("<think>\n<think>", "</think>"),
+    ("&lt;think&gt;", "&lt;/think&gt;"),
+    (f"<think_never_used_{'5' * 32}>", f"</think_never_used_{'5' * 32}>"),
+    ("<|inner_prefix|>", "<|inner_suffix|>"),
+    ('<details type="reasoning" done="true">\n<summary>Thought for 2 s</summary>\n', "\n</details>"),
     ("[THINK]", "[/THINK]"),
     ("<|begin_of_thought|>", "<|end_of_thought|>"),
     ("<|START_THINKING|>", "<|END_THINKING|>"),
@@ -173,3 +179,12 @@ def test_labels_are_found_in_any_order_and_dress():
     assert labelled(text, "plan") == "first a\nthen b"
     assert labelled(text, "situation") == "cold"
     assert labelled(text, "action") == ""
+
+
+@pytest.mark.parametrize("piece", ["  \n", "Action: {\n", "Action: ", "{", "<think>", "plan:\n"])
+def test_an_answer_costs_a_time_that_grows_with_its_length_alone(piece):
+    """A model may say whatever it likes, up to some megabytes."""
+    began_s = time.process_time()
+    with suppress(ActionError):
+        read(piece * (300_000 // len(piece)))
+    assert time.process_time() - began_s < 3.0

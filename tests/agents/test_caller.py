@@ -165,6 +165,10 @@ WRITTEN = {
     "qwen3-coder": f"I set it.\n\n<tool_call>\n{TAGGED}\n</tool_call>",
     "qwen3-coder, its beginning eaten": f"{TAGGED}\n</tool_call>",
     "qwen3-coder, a tag left out": f"<tool_call>{TAGGED.replace('</parameter>', '')}</tool_call>",
+    "qwen-agent": f"\u273fFUNCTION\u273f: {NAME}\n\u273fARGS\u273f: {JSON_100}",
+    "react": f"Thought: the fan.\nAction: {NAME}\nAction Input: {JSON_100}",
+    "grok": INVOKED.replace("invoke", "xai:function_call").replace("parameter", "xai:parameter"),
+    "as python in hermes's tags": f"<tool_call>\n{NAME}(percent=100)\n</tool_call>",
     "qwen2.5-coder": f"```json\n{ONE}\n```",
     "qwen2.5-coder, tools": f"<tools>{ONE}</tools>",
     "seed-oss": f"<seed:tool_call>{TAGGED}</seed:tool_call>",
@@ -187,6 +191,7 @@ WRITTEN = {
     "gpt-oss": f"<|channel|>analysis<|message|>Hm.<|end|><|start|>assistant<|channel|>commentary "
     f"to=functions.{NAME} <|constrain|>json<|message|>{JSON_100}<|call|>",
     "gpt-oss, by role": f"<|start|>assistant to=functions.{NAME}<|channel|>commentary json<|message|>{JSON_100}",
+    "gpt-oss, as code": f"<|channel|>commentary to=functions.{NAME} code<|message|>{JSON_100}<|call|>",
     "minimax m2": f"<minimax:tool_call>{INVOKED}</minimax:tool_call>",
     "functiongemma": f"<start_function_call>call:{NAME}{{percent:100}}<end_function_call>",
     "gemma 4": f"<|tool_call>call:{NAME}{{percent:100}}<tool_call|>",

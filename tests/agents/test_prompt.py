@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, brief, make_agent
+from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, make_agent, prompt_parts
 from automotive_cosim.agents.prompt import action_words, look_back, situation, step, turn
 from automotive_cosim.cockpit.actions import grammar, signatures
 from automotive_cosim.contracts import UNCALLED, Action, ActionType, Direction, Feedback, FeedbackCode, GpsFix
@@ -135,20 +135,23 @@ def test_the_prompt_leaves_out_only_rules_that_it_names():
         "Horn: for danger only",
         "Dipped beam: required at night (as (lit) roads are) (secondary)",
     ]
-    assert brief.context(text, "Watch my speed").split("\n") == [*told, "Further rules, by query: tolls, high beam"]
-    asked = brief.context(text, "What does this toll road cost?").split("\n")
+    assert prompt_parts.context(text, "Watch my speed").split("\n") == [
+        *told,
+        "Further rules, by query: tolls, high beam",
+    ]
+    asked = prompt_parts.context(text, "What does this toll road cost?").split("\n")
     assert asked == [*told, "Tolls: by number plate", "Further rules, by query: high beam"]
 
 
 def test_what_changed_is_told_and_another_screen_as_such(button):
     before = (button("a", "Fan 30 %"), button("b", "Max"))
-    assert brief.changes(before, before) == "nothing"
+    assert prompt_parts.changes(before, before) == "nothing"
     assert (
-        brief.changes(before, (button("a", "Fan 100 %"), button("b", "Max")))
+        prompt_parts.changes(before, (button("a", "Fan 100 %"), button("b", "Max")))
         == 'gone: "Fan 30 %"\nnew: "Fan 100 %"'
     )
     many = tuple(button(f"{n}", f"Entry {n}") for n in range(20))
-    assert brief.changes(many, before) == 'another screen is shown: "Fan 30 %", "Max"'
+    assert prompt_parts.changes(many, before) == 'another screen is shown: "Fan 30 %", "Max"'
 
 
 def test_a_reflecting_agent_is_told_what_the_driver_answered(observation):

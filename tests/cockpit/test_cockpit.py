@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.occupants import company
 from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, GLASS, HVAC, LIGHTS, MEDIA, MOTION, difference
 from automotive_cosim.contracts import (

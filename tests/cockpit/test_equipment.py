@@ -6,7 +6,7 @@ import pytest
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.commands import Set
-from automotive_cosim.cockpit.lacking import Lacking
+from automotive_cosim.cockpit.missing_parts import Lacking
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import ACTUATORS, BODY, HVAC, MEDIA, SEAT, TYRE
 from automotive_cosim.cockpit.widgets import Slider

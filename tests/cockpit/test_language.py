@@ -17,13 +17,13 @@ import pytest
 from babel.messages.catalog import Catalog
 
 from automotive_cosim import cockpit as package
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.apps.map.state import TURN_LEFT
 from automotive_cosim.cockpit.apps.media.state import Library
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.apps.phone.state import Directory
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said, word
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.theme import Weight, face

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.apps.map.lookout import ICONS, LINES
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said
-from automotive_cosim.cockpit.reach import CAMERA_M, HORIZON_M, NEWS_EVERY_S
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat
+from automotive_cosim.cockpit.sensor_range import CAMERA_M, HORIZON_M, NEWS_EVERY_S
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, HMI, OCCUPANT, SEAT, TYRE
 from automotive_cosim.contracts import (
     Connectivity,

@@ -14,13 +14,13 @@ import numpy.typing as npt
 import pytest
 
 from automotive_cosim.cockpit import accessibility
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.map.state import Navigation
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.drawing import Ink
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat
 from automotive_cosim.cockpit.registry import apps_in, pages
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.signals import ACTUATORS, difference

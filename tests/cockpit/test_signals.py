@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,7 +15,9 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import (
     ACTUATORS,
     ADAS,
+    CABIN,
     CATALOGUE,
+    DRIVE,
     HVAC,
     LIGHTS,
     MOTION,
@@ -28,6 +32,11 @@ from automotive_cosim.contracts import Surroundings
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
 from tests.laws import over
 
+VSS = Path(__file__).with_name("vss.tsv")
+"""What the newest release that has it says of each signal; ``python -m docs.outside vss`` tells what changed."""
+COMMANDED_HERE = ("IsChildLockActive", "Sunroof.Position", "HMI.CurrentLanguage")
+"""Sensors in VSS, which here are the switch as well."""
+
 ANYTHING = st.one_of(
     st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8), st.binary(max_size=2)
 )
@@ -38,6 +47,26 @@ def test_default_is_legal_and_path_is_vss(signal: Signal[Any]) -> None:
     assert signal.check(signal.default) == signal.default
     assert signal.path.startswith("Vehicle.")
     assert all(part[0].isupper() for part in signal.path.split("."))
+
+
+@over(csv.DictReader(VSS.read_text(encoding="utf-8").splitlines(), delimiter="\t"))
+def test_a_signal_of_vss_is_what_vss_says(stated: dict[str, str]) -> None:
+    signal = CATALOGUE[stated["path"]]
+    expected = "actuator" if signal.path.endswith(COMMANDED_HERE) else stated["type"]
+    assert signal.kind == ("sensor" if signal is DRIVE.HORN else expected)
+    assert signal.unit == stated["unit"]
+    kinds = {"boolean": bool, "string": str}
+    kind = float if signal.optional else type(signal.default)
+    assert kind is kinds.get(stated["datatype"].removesuffix("[]"), float)
+    if kind is float:
+        least = 0.0 if signal is CABIN.AMBIENT_LIGHT else signal.minimum  # 0 is off
+        assert not stated["min"] or (
+            signal.minimum is not None and signal.minimum >= min(float(stated["min"]), least)
+        )
+        assert not stated["max"] or (signal.maximum is not None and signal.maximum <= float(stated["max"]))
+        assert not stated["datatype"].startswith("uint") or signal.low >= 0
+        assert "int" not in stated["datatype"] or signal.step == int(signal.step)
+    assert not stated["allowed"] or set(signal.allowed) <= set(stated["allowed"].split(","))
 
 
 @given(value=ANYTHING)
@@ -59,7 +88,7 @@ def test_a_store_holds_only_legal_values(value: Any) -> None:
     ("signal", "value", "expected"),
     [
         (HVAC.FAN_SPEED, 101.0, "0 to 100 percent"),
-        (HVAC.DRIVER_TEMPERATURE, 15.5, "16 to 28 celsius"),
+        (HVAC.DRIVER_TEMPERATURE, 15.5, "16 to 28 Celsius"),
         (HVAC.FAN_SPEED, float("nan"), "float"),
         (HVAC.FAN_SPEED, True, "float"),
         (LIGHTS.SWITCH, "BRIGHT", "one of OFF, POSITION, AUTO, BEAM"),

@@ -202,10 +202,10 @@ def treatment(line):
     return next(entry for entry in TREATED if re.match(entry[0], arguments))
 
 
-def python(page, first):
-    """The block of a page that begins so."""
-    (block,) = (text for language, text in blocks(TOP / page) if language == "python" and text.startswith(first))
-    return block
+def block(page, kind, first=""):
+    """The block of a page that is of that language and begins so."""
+    (found,) = (text for language, text in blocks(TOP / page) if language == kind and text.startswith(first))
+    return found
 
 
 @pytest.fixture(scope="module")
@@ -213,11 +213,9 @@ def place(tmp_path_factory):
     """A folder with what the pages tell the reader to save, beside a checkout's docs."""
     folder = tmp_path_factory.mktemp("reader")
     (folder / "my_tasks").mkdir()
-    tasks = "\n".join(text for language, text in blocks(TOP / "docs/tasks.md") if language == "python")
-    (folder / "my_tasks/fog.py").write_text(tasks, encoding="utf-8")
-    seats = python("docs/tutorial.md", "from automotive_cosim.tasking.checks")
-    (folder / "my_tasks/seats.py").write_text(seats, encoding="utf-8")
-    agent = python("docs/tutorial.md", "from automotive_cosim import Action")
+    (folder / "my_tasks/fog.toml").write_text(block("docs/tasks.md", "toml"), encoding="utf-8")
+    (folder / "my_tasks/seats.toml").write_text(block("docs/tutorial.md", "toml", "[my_seat"), encoding="utf-8")
+    agent = block("docs/tutorial.md", "python", "from automotive_cosim import Action")
     (folder / "my_agents.py").write_text(agent, encoding="utf-8")
     (folder / "tasks").mkdir()
     (folder / "tasks" / "own.py").write_text("TASKS = ()\n", encoding="utf-8")
@@ -228,8 +226,7 @@ def place(tmp_path_factory):
     (folder / "prompts").mkdir()
     (folder / "prompts/careful.md").write_text("Be careful.\n", encoding="utf-8")
     (folder / "my_rules").mkdir()
-    (rules,) = (text for language, text in blocks(TOP / "docs/geo.md") if language == "toml")
-    (folder / "my_rules/FR-tours.toml").write_text(rules, encoding="utf-8")
+    (folder / "my_rules/FR-tours.toml").write_text(block("docs/geo.md", "toml"), encoding="utf-8")
     for name in ("my_agent.py", "plan.toml"):
         shutil.copyfile(TOP / "docs/examples/my-agent" / name, folder / name)
     return folder
@@ -387,7 +384,7 @@ def test_pages_count_screens_and_functions_as_they_are():
 
 def test_the_reference_of_observations_has_every_field_reading_action_and_number():
     from automotive_cosim.contracts import Observation, VehicleState
-    from automotive_cosim.drives.wakes import WAKES
+    from automotive_cosim.drives.changes import WAKES
     from automotive_cosim.envs import flat, flat_drive
 
     text = (TOP / "docs/reference/observations.md").read_text(encoding="utf-8")

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import http.client
+import socket
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
 
 pytest.importorskip("mcp", reason="the extra mcp is not installed")
 import anyio
+import uvicorn
 
-from automotive_cosim.doors.guard import Guarded
+from automotive_cosim.doors import guard
+from automotive_cosim.doors.guard import Guarded, Punctual, SameSite
 from automotive_cosim.service.own_names import is_own, own_names
 from tests.laws import over
 
@@ -24,7 +30,9 @@ async def reached(scope: Any, receive: Any, send: Any) -> None:
     await send({"type": "http.response.body", "body": b"reached"})
 
 
-def status(headers: Mapping[str, str], query: str = "", host: str = "127.0.0.1", path: str = "/mcp") -> int:
+def status(
+    headers: Mapping[str, str], query: str = "", host: str = "127.0.0.1", path: str = "/mcp", app: Any = None
+) -> int:
     """The status of the answer to a request."""
     sent: list[Any] = []
 
@@ -41,8 +49,64 @@ def status(headers: Mapping[str, str], query: str = "", host: str = "127.0.0.1",
         "query_string": query.encode("latin-1"),
         "headers": [(name.encode(), value.encode("latin-1")) for name, value in headers.items()],
     }
-    anyio.run(Guarded(reached, host, PORT, TOKEN), scope, receive, send)
+    anyio.run(app or Guarded(reached, host, PORT, TOKEN), scope, receive, send)
     return int(sent[0]["status"])
+
+
+@contextmanager
+def listening() -> Iterator[int]:
+    """A server that answers whoever comes; its port."""
+    with socket.create_server(("127.0.0.1", 0), backlog=200) as line:
+        config = uvicorn.Config(reached, http=Punctual, log_level="error", lifespan="off")
+        server = uvicorn.Server(config)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [line]})
+        thread.start()
+        try:
+            yield line.getsockname()[1]
+        finally:
+            server.should_exit = True
+            thread.join()
+
+
+def answered(port: int) -> bool:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+    connection.request("GET", "/")
+    found = connection.getresponse().read() == b"reached"
+    connection.close()
+    return found
+
+
+def test_idle_connections_keep_nobody_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guard, "MOST_CONNECTIONS", 8)
+    with listening() as port:
+        idle = [socket.create_connection(("127.0.0.1", port), timeout=20) for _ in range(40)]
+        assert answered(port)
+        assert all(ended(each) for each in idle[:30])
+        for each in idle:
+            each.close()
+
+
+@pytest.mark.parametrize("sent", [b"", b"GET / HT", b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n{"])
+def test_a_connection_has_to_send_its_request_soon(monkeypatch: pytest.MonkeyPatch, sent: bytes) -> None:
+    monkeypatch.setattr(guard, "PATIENCE_S", 0.1)
+    with listening() as port, socket.create_connection(("127.0.0.1", port), timeout=20) as slow:
+        slow.sendall(sent)
+        while not ended(slow):  # what answers before the body has come may have answered
+            pass
+        assert answered(port)
+
+
+def ended(line: socket.socket) -> bool:
+    try:
+        return line.recv(65536) == b""
+    except ConnectionResetError:
+        return True
+
+
+@over([(None, 200), (f"http://{OWN}", 200), (f"https://{OWN}", 200), ("http://evil.example", 403), ("null", 403)])
+def test_a_door_without_names_of_its_own_answers_no_other_site(origin, code):
+    given = {} if origin is None else {"origin": origin}
+    assert status({"host": OWN} | given, app=SameSite(reached)) == code
 
 
 def test_the_token_is_taken_from_the_address_or_the_header() -> None:

@@ -3,6 +3,8 @@
 import base64
 import socket
 import sys
+import urllib.error
+import urllib.request
 from collections.abc import Iterator
 
 import pytest
@@ -33,6 +35,19 @@ def client(sumo: None, program, until) -> Iterator[GenericEnvClient]:
     until(answers)
     with GenericEnvClient(base_url=f"http://127.0.0.1:{port}", message_timeout_s=120).sync() as made:
         yield made
+
+
+def test_pages_of_other_sites_and_folders_of_this_machine_are_out_of_reach(client, tmp_path) -> None:
+    address = client._async._base_url.replace("ws:", "http:")
+    assert urllib.request.urlopen(f"{address}/health").status == 200
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        urllib.request.urlopen(
+            urllib.request.Request(f"{address}/health", headers={"Origin": "http://evil.example"})
+        )
+    (tmp_path / "scenario.toml").write_text("", "utf-8")
+    for name in (str(tmp_path), str(tmp_path / "nowhere"), "..", "/etc"):
+        with pytest.raises(RuntimeError, match="no scenario named"):
+            client.reset(**RESET | {"scenario": name})
 
 
 def test_the_reference_solution_earns_the_reward_with_the_command_lines_trace(client, oracle) -> None:

@@ -21,12 +21,12 @@ from automotive_cosim.cosim.car import with_cause
 from automotive_cosim.drives.errands import AFTER_S, ASKED_APART_S, SPARE_S, said, understood, with_errands
 from automotive_cosim.drives.events import KINDS, DriveAct, Tracker
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.hands import Hands
 from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth, facts_of, judge
 from automotive_cosim.drives.score import score
 from automotive_cosim.drives.script import DriveScript, read_script, script_json
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.drives.touches import Hands
 from automotive_cosim.traffic.fork import Simulations
 from tests.cockpit.conftest import outside, town
 from tests.drives.scenes import moment

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated, take_seats
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat, seated, take_seats
 from automotive_cosim.cockpit.signals import ENERGY, Signals, named
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.family import FEWEST, LAST_S, MOST, PAUSE_S, Season

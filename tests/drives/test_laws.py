@@ -12,11 +12,11 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.contracts import AlertKind, Cruise, PullOver, Reroute, RoadRequest, Severity, SlowDown
+from automotive_cosim.drives.changes import WAKES
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import NOT_DUE, ORDER, Judgement, Worth, judge
 from automotive_cosim.drives.score import Score, score
-from automotive_cosim.drives.wakes import WAKES
 from tests.drives.record import Recorded, came_off, outdated, recorded
 from tests.drives.rote import most_frequent
 

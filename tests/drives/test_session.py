@@ -22,6 +22,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.alarm import Alarm, noticed
+from automotive_cosim.drives.changes import LONGEST_S, WAKES
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.driver import driver_line
 from automotive_cosim.drives.families import FAMILIES
@@ -31,7 +32,6 @@ from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
-from automotive_cosim.drives.wakes import LONGEST_S, WAKES
 from automotive_cosim.drives.watchers import READS, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.loop import Actor, play
@@ -39,7 +39,7 @@ from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.spaces import GOAL_BYTES
 from automotive_cosim.run.drive import JudgedDrive
-from automotive_cosim.tasks.spoken import FOREIGN, phrasings
+from automotive_cosim.tasking.reading import FOREIGN, shared
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import limit, moment, vehicle
@@ -505,7 +505,7 @@ def test_driver_and_car_speak_the_language(simulations: Simulations, language: L
 
 def test_the_answer_is_the_one_that_drivers_give_in_tasks() -> None:
     for language in FOREIGN:
-        assert phrasings(language)["any"]["lines"][ANSWERS[Language.ENGLISH]] == ANSWERS[language]
+        assert shared().lines[language][ANSWERS[Language.ENGLISH]] == ANSWERS[language]
 
 
 @pytest.mark.slow

@@ -12,8 +12,8 @@ from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import Action, ActionType, AlertKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.alarm import Alarm, noticed
+from automotive_cosim.drives.attention import LOOK_S
 from automotive_cosim.drives.events import KINDS, DriveAct
-from automotive_cosim.drives.looks import LOOK_S
 from automotive_cosim.drives.reading import Reader
 from automotive_cosim.drives.watchers import RulePerfect
 from tests.drives.scenes import NOON, limit, moment

@@ -15,7 +15,7 @@ itself)."""
 PROGRAM = """
 import gc, json, os
 from automotive_cosim.envs.cockpit import CockpitEnv
-from automotive_cosim.agents.leftovers import tree
+from automotive_cosim.agents.cleanup import tree
 from automotive_cosim.traffic.fork import Simulations
 
 EPISODES = 200

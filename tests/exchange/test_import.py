@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from datetime import datetime
 
 import pytest
@@ -118,6 +119,56 @@ def test_an_imported_vehicle_does_what_the_file_says(file, tmp_path, simulations
     slope = -0.0384
     beside_m = [each.y_m - slope * each.x_m for each in (seen[3], seen[7])]
     assert beside_m[1] - beside_m[0] == pytest.approx(3.2, abs=0.1), "a lane to the left"
+
+
+def of_entities(what):
+    return f"""<StartTrigger><ConditionGroup><Condition name="t" delay="0" conditionEdge="rising">
+<ByEntityCondition><TriggeringEntities triggeringEntitiesRule="any"><EntityRef entityRef="other"/>
+</TriggeringEntities><EntityCondition>{what}</EntityCondition></ByEntityCondition></Condition></ConditionGroup></StartTrigger>"""
+
+
+FAR = """<RelativeDistanceCondition entityRef="ego" value="55" freespace="false" relativeDistanceType="longitudinal"
+rule="greaterThan"/>"""
+AFTER = """<StartTrigger><ConditionGroup><Condition name="t" delay="2" conditionEdge="none"><ByValueCondition>
+<StoryboardElementStateCondition storyboardElementType="event" storyboardElementRef="moves" state="endTransition"/>
+</ByValueCondition></Condition></ConditionGroup></StartTrigger>"""
+
+
+@pytest.mark.sumo
+def test_a_vehicle_waits_for_what_the_file_says(file, tmp_path, simulations: Simulations):
+    """It cuts in before the ego, into the ego's own lane, as soon as it is 55 m ahead, and brakes 2 s later."""
+    head, moves = TEXT.split(LANES.format(1))
+    begins, ends = moves.index("<StartTrigger>"), moves.index("</StartTrigger>") + len("</StartTrigger>")
+    moves = moves[:begins] + of_entities(FAR) + moves[ends:]
+    ends = moves.index('<Event name="brakes"')
+    begins = moves.index("<StartTrigger>", ends)
+    moves = moves[:begins] + AFTER + moves[moves.index("</StartTrigger>", begins) + len("</StartTrigger>") :]
+    text = head + LANES.format(0).replace('entityRef="other"', 'entityRef="ego"') + moves
+    text = text.replace('value="8"', 'value="16"').replace('x="420" y="231.4"', 'x="345" y="238"')
+    file.write_text(text.replace('y="239.9"', 'y="236"'), "utf-8")
+    scenario = open_scenario(import_openscenario(file, tmp_path / "made", grid(), country="FR"))
+    traffic = simulations.warm(scenario).depart(EgoPlan(scenario.ego.trips[0], "average"))
+    moved_s, beside_m = None, []
+    try:
+        for at_s in range(1, 25):
+            traffic.advance(1.0)
+            seen = traffic.look().vehicles
+            ego, other = (
+                next(each for each in seen if (each.vehicle_id == "ego") == mine) for mine in (True, False)
+            )
+            ahead_m = math.dist((ego.x_m, ego.y_m), (other.x_m, other.y_m))
+            if moved_s is None and ahead_m > 55:
+                moved_s = at_s
+            beside_m.append((other.y_m + 0.0384 * other.x_m) - (ego.y_m + 0.0384 * ego.x_m))
+            if moved_s is not None and at_s == moved_s + 9:
+                break
+    finally:
+        traffic.close()
+    assert moved_s is not None
+    assert moved_s > 1
+    assert other.speed_mps == pytest.approx(3.0, abs=0.2)
+    assert abs(beside_m[moved_s - 2]) > 2
+    assert abs(beside_m[moved_s + 1]) < 0.5, "in the lane of the ego"
 
 
 @pytest.mark.parametrize(

@@ -8,14 +8,19 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+import sumolib
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import Catalogs
-from automotive_cosim.exchange.incoming import road_network, scenario_text
+from automotive_cosim.exchange.incoming import import_openscenario, road_network, scenario_text
 from automotive_cosim.exchange.places import RoadPlaces
 from automotive_cosim.exchange.storyboard import read_story
 from automotive_cosim.exchange.tree import XmlElement, read_tree
 from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
+from automotive_cosim.scenarios import load, open_scenario
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.network import drives_on_left
 
 LANE = '<lane id="{}" type="driving" level="false"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>'
 SECTION = """<laneSection s="{}"><left>{}</left><center>
@@ -142,6 +147,7 @@ PLACES = {
     "fourth": ('<RelativeRoadPosition entityRef="other" ds="40" dt="0.1"/>',),
     "fifth": ('<RelativeObjectPosition entityRef="third" dx="60" dy="0.1"/>',),
     "sixth": ('<RelativeWorldPosition entityRef="third" dx="80" dy="0.1"/>',),
+    "box": ('<LanePosition roadId="1" laneId="-1" s="800"/>',),
     "eighth": ('<WorldPosition x="300" y="-3.6"/>',),
     "seventh": ('<RoadPosition roadId="1" s="250" t="-5.2"/>',),
 }  # fmt: skip
@@ -152,7 +158,12 @@ OTHER_CAR = f"""<CatalogReference catalogName="Vehicle" entryName="long"><Parame
 CARS = "".join(
     f'<ScenarioObject name="{name}">{OTHER_CAR if name == "other" else VEHICLE.format("v")}</ScenarioObject>'
     for name in PLACES
+    if name != "box"
 )
+BOX = """<ScenarioObject name="box"><MiscObject name="b" miscObjectCategory="obstacle" mass="1">
+<ParameterDeclarations><ParameterDeclaration name="long" parameterType="double" value="2"/></ParameterDeclarations>
+<BoundingBox><Center x="0" y="0" z="0"/><Dimensions width="2" length="$long" height="1"/></BoundingBox></MiscObject>
+</ScenarioObject>"""
 FOLDERS = "".join(
     f'<{kind}Catalog><Directory path="{kind}"/></{kind}Catalog>'
     for kind in ("Environment", "Maneuver", "MiscObject", "Pedestrian", "Route", "Trajectory", "Vehicle")
@@ -174,7 +185,7 @@ FILE = f"""<?xml version="1.0" encoding="UTF-8"?>
 <OpenSCENARIO><FileHeader revMajor="1" revMinor="1" date="2026-01-01T00:00:00" description="d" author="a"/>
 <ParameterDeclarations><ParameterDeclaration name="is" parameterType="string" value="yes"/><ParameterDeclaration
 name="v" parameterType="double" value="36"/></ParameterDeclarations><CatalogLocations>{FOLDERS}</CatalogLocations>
-<RoadNetwork><LogicFile filepath="road.xodr"/></RoadNetwork><Entities>{CARS}</Entities>
+<RoadNetwork><LogicFile filepath="road.xodr"/></RoadNetwork><Entities>{CARS}{BOX}</Entities>
 <Storyboard><Init><Actions><GlobalAction><EnvironmentAction>{SKY.format("e")}</EnvironmentAction></GlobalAction>
 {"".join(private(name, *told) for name, told in PLACES.items())}</Actions></Init>
 <Story name="s"><ParameterDeclarations><ParameterDeclaration name="who" parameterType="string" value="other"/>
@@ -208,7 +219,7 @@ class WordsSample(NamedTuple):
             self.file.write_text(written(root), "utf-8")
         story = read_story(self.file, "ego")
         places = RoadPlaces(self.places.net, self.file.parent / "road.xodr")
-        return f"{story.road}\n{scenario_text('x', self.file, story, places, 'FR')}"
+        return f"{story.road}\n" + scenario_text("x", self.file, story, places, "FR", has_place=False)
 
 
 def written(element):
@@ -307,3 +318,83 @@ def test_what_is_carried_out_changes_the_scenario(sample):
                 has_changed = True
             left -= {(element.tag, f"@{name}")} if has_changed else set()
     assert not left, f"{sorted(left)} neither does it change anything, nor is it refused"
+
+
+# --- places ------------------------------------------------------------------------------------------------------
+
+LAID = """<OpenSCENARIO><FileHeader/><RoadNetwork><LogicFile filepath="road.xodr"/></RoadNetwork><Entities>
+<ScenarioObject name="ego">{car}</ScenarioObject><ScenarioObject name="other">{car}</ScenarioObject></Entities>
+<Storyboard><Init><Actions><Private entityRef="ego"><PrivateAction><TeleportAction><Position>
+<LanePosition roadId="1" laneId="{ahead}" s="600"/></Position></TeleportAction></PrivateAction></Private>
+<Private entityRef="other">
+<PrivateAction><TeleportAction><Position>{place}</Position></TeleportAction></PrivateAction></Private></Actions></Init>
+</Storyboard></OpenSCENARIO>"""
+TURNED = """<LanePosition roadId="1" laneId="-1" s="300"><Orientation type="relative" h="3.14"/></LanePosition>"""
+FRONT_M = 1.4 + 4.5 / 2
+
+
+def laid(folder, place, rule="RHT"):
+    """The other vehicle's front bumper: x, y, and whether it drives along the x axis."""
+    sections = section(0, 2), section(90), section(500, 2), section(1000)
+    (folder / "road.xodr").write_text(road(*sections, rule=rule), "utf-8")
+    ahead = 1 if rule == "LHT" else -1
+    (folder / "laid.xosc").write_text(LAID.format(car=VEHICLE.format("v"), place=place, ahead=ahead), "utf-8")
+    made = load(import_openscenario(folder / "laid.xosc", folder / "made", country="FR", replaces=True))
+    (other,) = made.incidents
+    back = {edge.removeprefix("-") if edge.startswith("-") else f"-{edge}" for edge in other.route}
+    assert not back & set(other.route), "it turns round at the end of the road"
+    net = sumolib.net.readNet(str(folder / "made" / "road.net.xml"))
+    lane = [each for each in net.getEdge(other.route[0]).getLanes() if each.allows("passenger")][other.lane]
+    x_m, y_m = sumolib.geomhelper.positionAtShapeOffset(lane.getShape(), other.position_m)
+    assert drives_on_left(folder / "made" / "road.net.xml") == (rule == "LHT")
+    return x_m, y_m, lane.getShape()[-1][0] > lane.getShape()[0][0]
+
+
+@pytest.mark.parametrize("rule", ["RHT", "LHT"])
+@pytest.mark.parametrize(("lane", "s_m"), [(1, 50), (-1, 1100), (-2, 300), (3, 700), (-1, 40), (2, 1150)])
+def test_a_place_on_a_road_of_several_lane_sections_is_where_the_file_has_it(tmp_path, rule, lane, s_m):
+    x_m, y_m, is_along = laid(tmp_path, f'<LanePosition roadId="1" laneId="{lane}" s="{s_m}"/>', rule)
+    assert is_along == ((lane < 0) == (rule == "RHT"))
+    assert x_m == pytest.approx(s_m + (FRONT_M if is_along else -FRONT_M), abs=0.3)
+    assert y_m == pytest.approx((abs(lane) - 0.5) * 3.5 * (1 if lane > 0 else -1), abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("place", "told"),
+    [
+        ('<LanePosition roadId="1" laneId="-1" s="300" offset="-13"/>', r"xosc line \d+: <LanePosition> .* beside"),
+        ('<LanePosition roadId="1" laneId="-3" s="50"/>', "lane -3 of road 1, which has none at s = 50"),
+        ('<LanePosition roadId="1" laneId="-1" s="1300"/>', "s = 1300 m of road 1, which is 1200 m long"),
+        ('<LanePosition roadId="2" laneId="-1" s="0"/>', "is on road '2', which .* does not have"),
+        (TURNED, "<LanePosition> heads against"),
+        ('<WorldPosition x="300" y="-1.8" h="3.14"/>', "<WorldPosition> heads against or across the lane"),
+        ('<RoadPosition roadId="1" s="300" t="1.8"/>', "<RoadPosition> heads against"),
+        ('<RelativeRoadPosition entityRef="other" ds="3" dt="0"/>', "counts from 'other', which has no place"),
+    ],
+)  # fmt: skip
+def test_a_place_that_is_not_carried_out_is_refused(tmp_path, place, told):
+    with pytest.raises(ScenarioError, match=told):
+        laid(tmp_path, place)
+
+
+@pytest.mark.sumo
+def test_a_road_that_keeps_left_is_driven(tmp_path, simulations: Simulations):
+    laid(tmp_path, '<LanePosition roadId="1" laneId="1" s="700"/>', "LHT")
+    scenario = open_scenario(tmp_path / "made")
+    traffic = simulations.warm(scenario).depart(EgoPlan(scenario.ego.trips[0], "average"))
+    try:
+        traffic.advance(3.0)
+        (ego,) = (each for each in traffic.look().vehicles if each.vehicle_id == "ego")
+    finally:
+        traffic.close()
+    assert ego.x_m > 600 + FRONT_M
+    assert ego.y_m == pytest.approx(1.75, abs=0.2)
+
+
+def test_what_an_act_does_ends_with_its_stop(sample):
+    early = FILE.replace('<SimulationTimeCondition value="50"', '<SimulationTimeCondition value="20"')
+    assert early != FILE
+    sample.file.write_text(FILE, "utf-8")
+    assert 'name = "last"' in sample.text()
+    sample.file.write_text(early, "utf-8")
+    assert 'name = "last"' not in sample.text(), "it would begin at 30 s"

@@ -203,6 +203,7 @@ KEPT_IN = {
     "formats/files.py": "the bounds themselves",
     "formats/xml.py": "the same",
     "formats/csvs.py": "the same",
+    "exchange/incoming.py": "roads that were read within bounds before, and netconvert's",
     "studies/calibration/sheets.py": "a process with limits",
     "osm/extract.py": "a process with limits",
     "osm/overpass_json.py": "sixty-four bytes, to tell a format",

@@ -17,7 +17,7 @@ ROOT = Path(str(files("automotive_cosim")))
 SHIPPED = [
     *ROOT.glob("sumo_scenarios/*/scenario.toml"),
     *ROOT.glob("geo/data/*.toml"),
-    *ROOT.glob("tasks/phrasings/*.toml"),
+    *ROOT.glob("tasks/limits/*.toml"),
 ]
 AWKWARD = '''# a = 1
 a = 1

@@ -46,7 +46,7 @@ EXCEPTIONS = {
     "automotive_cosim/cli/terminal.py": "opens this program's own streams again",
     "automotive_cosim/traffic/process.py": "hands a fork its own copy, in a scratch folder, of what SUMO writes",
     "agents/process.py": "tells the kernel which process is to end first",
-    "agents/leftovers.py": "empties what an agent left, deeper than paths are long",
+    "agents/cleanup.py": "empties what an agent left, deeper than paths are long",
     "automotive_cosim/osm/extract.py": "a link in a scratch folder, by whose name a library knows a format",
 }
 SOURCES = [

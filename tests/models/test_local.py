@@ -16,7 +16,7 @@ from automotive_cosim.contracts import BoundingBox, Element, Feedback, FeedbackC
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ModelError, SetupError, UserError, install_hint
 from automotive_cosim.models import ChatMessage, Local, local, make_model
-from automotive_cosim.run.fit import misfit
+from automotive_cosim.run.model_check import misfit
 
 FORM = {"type": "object", "properties": {"action": {"type": "object"}}, "required": ["action"]}
 

@@ -142,7 +142,7 @@ def test_the_core_keeps_the_order_of_the_contestants():
 
 
 def test_core_is_a_word_that_chooses_sixty_tasks_of_all_suites():
-    assert choose(["core"]) == record.shipped().core
+    assert set(choose(["core"])) == set(record.shipped().core)
     assert len(choose(["core"])) == 60
     assert {CATALOGUE[each].suite for each in choose(["core"])} == {task.suite for task in CATALOGUE.values()}
 

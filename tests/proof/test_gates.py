@@ -22,9 +22,9 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.interface.functions import call_of
-from automotive_cosim.proof import gates, sight
+from automotive_cosim.proof import first_sight, gates
 from automotive_cosim.proof.functions import functions_are_not_enough, functions_win
-from automotive_cosim.proof.ground import Ground, Script
+from automotive_cosim.proof.hand_over import Ground, Script
 from automotive_cosim.tasking import verdict
 from automotive_cosim.tasking.checks import (
     AlertGiven,
@@ -51,7 +51,7 @@ from automotive_cosim.tasking.triggers import (
     Trigger,
 )
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
+from tests.written import COMFORT, ON_THE_WAY, asked
 
 SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
 GRID = Start("grid", "avenue")
@@ -359,7 +359,8 @@ def test_a_pair_with_one_right_act_is_seen(ground):
 
 
 def test_a_pair_that_can_always_be_declined_is_seen(ground):
-    idle = decline(GRID, ON_THE_WAY, COMFORT, Basis.WISH, reasons=(Reason.SAFETY,))
+    declares, reasons = GoalStatus.INFEASIBLE, frozenset({Reason.SAFETY})
+    idle = Half(GRID, ON_THE_WAY, NothingDone(), (), COMFORT, Basis.WISH, declares=declares, reasons=reasons)
     pair = replace(SOUND, first=idle, second=idle, difference="none")
     grounds = {half: ground(pair, half) for half in pair.halves}
     assert f"{GoalStatus.INFEASIBLE} wins both halves" in list(gates.trivial(grounds))
@@ -399,7 +400,7 @@ def test_whatever_an_observation_tells_is_compared(ground):
     """Every field that differs alone gives a pair away that declares nothing."""
     taken = ground(SOUND, "first")
     seen, moment = taken.episode.observation, taken.episode.moments[0]
-    assert list(sight.undeclared(frozenset(), (seen, moment), (seen, moment))) == []
+    assert list(first_sight.undeclared(frozenset(), (seen, moment), (seen, moment))) == []
     others = [replace(seen, goal="Else."), replace(seen, elements=seen.elements[:-1])]
     others += [replace(seen, vehicle=replace(seen.vehicle, **change)) for change in _changes(seen.vehicle)]
     others += [replace(seen, gps=replace(seen.gps, **change)) for change in _changes(seen.gps)]
@@ -408,7 +409,7 @@ def test_whatever_an_observation_tells_is_compared(ground):
             changed = replace(element, **change)
             others.append(replace(seen, elements=(*seen.elements[:place], changed, *seen.elements[place + 1 :])))
     for other in others:
-        assert list(sight.undeclared(frozenset(), (seen, moment), (other, moment))), other
+        assert list(first_sight.undeclared(frozenset(), (seen, moment), (other, moment))), other
 
 
 def test_whatever_a_line_of_the_context_is_made_of_is_compared(ground):
@@ -423,15 +424,17 @@ def test_whatever_a_line_of_the_context_is_made_of_is_compared(ground):
     ):  # fmt: skip
         driving = replace(moment.driving, road=there)
         context = replace(moment.context, driving=driving)
-        assert list(sight.undeclared(frozenset(), (seen, moment), (seen, replace(moment, context=context)))), there
+        assert list(
+            first_sight.undeclared(frozenset(), (seen, moment), (seen, replace(moment, context=context)))
+        ), there
     later = replace(moment, local_time=moment.local_time + timedelta(seconds=1))
-    assert list(sight.undeclared(frozenset(), (seen, moment), (seen, later)))
+    assert list(first_sight.undeclared(frozenset(), (seen, moment), (seen, later)))
     for change in _changes(moment.weather):
         other = replace(moment, weather=replace(moment.weather, **change))
-        assert list(sight.undeclared(frozenset(), (seen, moment), (seen, other))), change
+        assert list(first_sight.undeclared(frozenset(), (seen, moment), (seen, other))), change
     for change in _changes(moment.connectivity):
         other = replace(moment, connectivity=replace(moment.connectivity, **change))
-        assert list(sight.undeclared(frozenset(), (seen, moment), (seen, other))), change
+        assert list(first_sight.undeclared(frozenset(), (seen, moment), (seen, other))), change
 
 
 def _changes(what):
@@ -492,8 +495,8 @@ def test_a_wrong_tag_of_place_is_seen(ground, tags, origins, countries, rule, se
 
 
 def test_every_reading_has_a_facet_and_every_difference_frees_some():
-    assert {field.name for field in fields(VehicleState)} == set(sight.READINGS)
-    assert set(sight.FREED) == set(Differs)
+    assert {field.name for field in fields(VehicleState)} == set(first_sight.READINGS)
+    assert set(first_sight.FREED) == set(Differs)
 
 
 def test_a_scenario_out_of_reach_is_seen(simulations):

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, take_seats
 from automotive_cosim.cockpit.apps.phone.state import Thread
 from automotive_cosim.cockpit.apps.trip import TripMeter
 from automotive_cosim.cockpit.belongings import Belongings
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat, take_seats
 from automotive_cosim.cockpit.signals import ADAS, BODY, Signals
 from automotive_cosim.contracts import BoundingBox, Element
 from automotive_cosim.proof.knowledge import DrawnValues, normal, unknown

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.proof.ground import Ground
+from automotive_cosim.proof.hand_over import Ground
 from automotive_cosim.proof.prover import changed_traces, read_traces
 from automotive_cosim.tasks import CATALOGUE
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from automotive_cosim.run.kept import shown
+from automotive_cosim.run.trial_folder import shown
 
 
 def _path() -> list[dict[str, Any]]:

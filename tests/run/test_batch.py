@@ -16,7 +16,6 @@ from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_jobs, run_plan
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
-from automotive_cosim.run.kept import pictures, read_steps, read_trial
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue
@@ -25,6 +24,7 @@ from automotive_cosim.run.road import read_record
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import opened, read_rows, read_trace, trace_file
+from automotive_cosim.run.trial_folder import pictures, read_steps, read_trial
 from automotive_cosim.run.worker import run_job, trials
 from automotive_cosim.tasks import CATALOGUE
 from tests.here import Here

@@ -37,7 +37,6 @@ from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup, run_drive
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob
-from automotive_cosim.run.kept import read_steps, read_trial
 from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.record import Recorder
@@ -47,6 +46,7 @@ from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.row import as_json, from_json, steady
 from automotive_cosim.run.store import read_rows, read_trace
+from automotive_cosim.run.trial_folder import read_steps, read_trial
 from automotive_cosim.traffic.fork import Simulations
 
 

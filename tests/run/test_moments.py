@@ -2,6 +2,7 @@
 
 import json
 import lzma
+import os
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -24,6 +25,7 @@ from automotive_cosim.geo.locate import Geo
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
 from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged, judged_file, read_judged, write_judged
@@ -243,3 +245,24 @@ def test_stored_episodes_are_judged_again_by_the_present_checks(tmp_path, monkey
     monkeypatch.setattr(CATALOGUE, "_tasks", others)
     assert all(each.now is None and "no task" in each.problem for each in regrade(tmp_path / "e"))
     assert before == {path: path.read_bytes() for path in (tmp_path / "e").rglob("*") if path.is_file()}
+
+
+def ends_its_process(*_: object) -> None:
+    os._exit(9)
+
+
+def test_what_cannot_be_judged_again_is_told_and_ends_nothing(tmp_path, monkeypatch):
+    """Stored moments may be anybody's: malformed ones, and such as take more than they may."""
+    jobs = make_plan({"agents": ["oracle", "no-op"], "tasks": ["hvac_fan_max"]}).episodes()[:2]
+    held = PartsHeld(goal=True, clean=True, safe=True, in_time=True, declared=True)
+    rows = {job.id: replace(job.planned(), success=True, parts=held) for job in jobs}
+    monkeypatch.setattr("automotive_cosim.run.regrade.read_evaluation", lambda folder: None)
+    monkeypatch.setattr("automotive_cosim.run.regrade.read_trials", lambda folder: rows)
+    first, second = sorted(rows)
+    judged_file(tmp_path, first).parent.mkdir()
+    judged_file(tmp_path, first).write_bytes(lzma.compress(b'{"pool": [["#", 7]], "trace": 3}'))
+    told = list(regrade(tmp_path))
+    assert [(each.episode, each.now) for each in told] == [(first, None), (second, None)]
+    assert all(each.problem and "\n" not in each.problem for each in told)
+    monkeypatch.setattr("automotive_cosim.run.regrade.read_judged", ends_its_process)
+    assert all("more memory or processor time" in each.problem for each in regrade(tmp_path))

@@ -53,10 +53,11 @@ class Slow(Base):
         return {"action_type": "wait", "seconds": 1}
 """
 TASKS = """
-from dataclasses import replace
-from automotive_cosim.tasks.hvac import TASKS as THEIRS
-
-TASKS = [replace(next(task for task in THEIRS if task.id == "hvac_fan_max"), id="own_fan")]
+[own_fan]
+is = { like = "asked", module = "hvac", deadline = "comfort", start = "paris_centre", trigger = ["driving", 3, 60] }
+templates = "Fan to max. / Fan all the way up. / Full blast on the blower. / Highest setting. / Maximum air flow."
+goal = "HVAC.FAN_SPEED = 100"
+moves = "open climate; tap hvac.fan.max"
 """
 OBJECT_STORE_BYTES = 80 * 1024**2
 MARK = "COSIM_TEST_MARK"
@@ -128,7 +129,7 @@ def mine(tmp_path, monkeypatch):
     folder = tmp_path / "mine"
     (folder / "tasks").mkdir(parents=True)
     (folder / "mine.py").write_text(AGENTS)
-    (folder / "tasks" / "own.py").write_text(TASKS)
+    (folder / "tasks" / "own.toml").write_text(TASKS)
     monkeypatch.chdir(folder)
     return folder
 

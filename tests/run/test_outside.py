@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim.agents import AgentSettings, Stage, StageName, make_agent
-from automotive_cosim.agents.leftovers import remove, tree
+from automotive_cosim.agents.cleanup import remove, tree
 from automotive_cosim.agents.wire import LONGEST_BYTES, MOST_VALUES
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.errors import ActionError, AgentError, ModelError, OutOfBudgetError, UserError

@@ -6,9 +6,9 @@ import pytest
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.kept import read_steps, read_trial
 from automotive_cosim.run.record import check_folder, default_folder
 from automotive_cosim.run.rerun import rerun
+from automotive_cosim.run.trial_folder import read_steps, read_trial
 
 
 def test_an_empty_or_missing_folder_will_do(tmp_path):

@@ -15,8 +15,8 @@ from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, 
 from automotive_cosim.drives.score import together
 from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.report.stats import upper_bound
+from automotive_cosim.run.budget import Meter, Spent
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.meter import Meter, Spent
 from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit, progress_in_words
@@ -411,6 +411,18 @@ def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
         ("[factors]\ntask = ['hvac_fan_max']\nhour = [3]", "hour can be varied for drives alone"),
         ("[factors]\ndrive = ['grid_june']\ncolour = ['red']", "no factor named 'colour'"),
         ("[factors]\ndrive = ['grid_june']\nhour = { least = 9, most = 3 }", "hour is empty"),
+        *(
+            (f"[factors]\ndrive = ['grid_june']\nhour = {given}", error)
+            for given, error in (
+                ("{ least = 3, most = 9, nominal = 'a' }", "nominal is 'a'; it must be a number"),
+                ("{ least = 3, most = 9, nominal = [4] }", "nominal is"),
+                ("{ least = 3, most = 9, whole = 'x' }", "whole is 'x'"),
+                ("{ least = true, most = 9 }", "least is true"),
+                ("{ least = 3 }", "hour lacks 'most'"),
+                ("[1, nan]", "neither a list of values nor"),
+                ("[[1], [2]]", "neither a list of values nor"),
+            )
+        ),
         ("[factors]\nhour = [3]", "give one of the two"),
         ("[factors]\ndrive = ['grid_yune']", "did you mean 'grid_june'"),
         ("[factors]\ndrive = ['grid_june']\n[failure]\nevents = ['blue_ligt']", "did you mean 'blue_light'"),

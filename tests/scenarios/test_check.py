@@ -16,7 +16,7 @@ from automotive_cosim.scenarios import Ego, Scenario, Street, Trip, open_scenari
 from automotive_cosim.scenarios.check import ScenarioProof, by_clock, check
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic import stability
-from automotive_cosim.traffic.posted import timed_limits
+from automotive_cosim.traffic.posted_limits import timed_limits
 
 
 def _coarse(scenario: Scenario, warm_up_s: float | None = None) -> Scenario:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from contextlib import closing
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -116,6 +117,18 @@ def test_it_runs_from_its_own_begin_and_leaves_its_folder_alone(foreign: Path) -
     assert departed_s >= 36_000 + scenario.sumo.warm_up_s
     assert vehicles > 1
     assert _listing(foreign.parent) == before
+
+
+def test_cars_that_are_to_reroute_do_so_again_and_again(foreign: Path, tmp_path: Path) -> None:
+    """SUMO's own period is 0, with which its devices choose at the departure and never again."""
+    scenario = open_scenario(foreign)
+    asked = replace(scenario, sumo=replace(scenario.sumo, background_rerouting=0.5))
+    folders = tmp_path / "kept", tmp_path / "asked"
+    for folder, of, period in zip(folders, (scenario, asked), (None, "60"), strict=True):
+        folder.mkdir()
+        options = run_options(copied(read_configuration(foreign), folder), Setup(of))
+        assert options.get("device.rerouting.period") == period
+        assert (options.get("device.rerouting.probability") == "0.5") is (period is not None)
 
 
 def test_a_folder_with_one_configuration_opens_as_that(foreign: Path) -> None:

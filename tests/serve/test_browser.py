@@ -20,8 +20,8 @@ from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.formats.writing import is_being_written, mark_as_written
 from automotive_cosim.run.episode import EpisodeObserver
-from automotive_cosim.run.kept import shown
 from automotive_cosim.run.observer import Shot
+from automotive_cosim.run.trial_folder import shown
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.study import PeopleStudy

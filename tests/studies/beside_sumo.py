@@ -104,24 +104,25 @@ def _side(folder: Path, given: Configuration) -> Side:
     )
 
 
-def made(folder: Path) -> Path:
+def made(folder: Path, end_s: int = 360) -> Path:
     """A network with every class of vehicle, sublanes, people on foot, and a flow that only ``end`` spaces out."""
     grid = "--grid --grid.number 4 --grid.length 180 -L 2 --sidewalks.guess --crossings.guess --bikelanes.guess"
     assert run("netgenerate", [*grid.split(), "--no-turnarounds", "--tls.guess", "-o", "made.net.xml"], folder)[0]
     types = "".join(f'<vType id="{each}" vClass="{each}"/>' for each in CLASSES)
     ways = ("A0A1", "D3D2"), ("D0C0", "A3B3"), ("A2B2", "D1D0"), ("C3C2", "B0A0")
     flows = "".join(
-        f'<flow id="f{number}" type="{each}" begin="0" end="360" probability="0.03" departSpeed="max" '
+        f'<flow id="f{number}" type="{each}" begin="0" end="{end_s}" probability="0.03" departSpeed="max" '
         f'from="{ways[number % 4][0]}" to="{ways[number % 4][1]}"/>'
         for number, each in enumerate(CLASSES)
     )
     (folder / "made.rou.xml").write_text(
         f'<routes>{types}<vTypeDistribution id="mix" vTypes="truck moped passenger"/>{flows}'
         '<flow id="mixed" type="mix" begin="0" number="60" from="B3B2" to="C0C1" departLane="random"/>'
-        '<personFlow id="p" begin="0" end="360" period="9"><walk from="A0A1" to="C2C3"/></personFlow></routes>'
+        f'<personFlow id="p" begin="0" end="{end_s}" period="9"><walk from="A0A1" to="C2C3"/></personFlow></routes>'
     )
     (folder / "made.sumocfg").write_text(
-        '<configuration><net-file value="made.net.xml"/><route-files value="made.rou.xml"/><end value="360"/>'
+        '<configuration><net-file value="made.net.xml"/><route-files value="made.rou.xml"/>'
+        f'<end value="{end_s}"/>'
         '<step-length value="0.5"/><lateral-resolution value="0.8"/>'
         '<device.rerouting.probability value="0.4"/><device.rerouting.period value="30"/></configuration>'
     )

@@ -7,13 +7,14 @@ import pytest
 from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.episode.conditions import Conditions, condition
 from automotive_cosim.interface.policy import HOUSE, told
-from automotive_cosim.proof.ground import Ground
-from automotive_cosim.proof.policy import broken, policy, tempted
+from automotive_cosim.proof.hand_over import Ground
+from automotive_cosim.proof.policy import broken, policy, temptations, tempted
 from automotive_cosim.tasking import policy as judged
 from automotive_cosim.tasking.policy import CHECKS, Breach, first_breaches
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.temptations import TEMPTATIONS
 from tests.laws import over
+
+TEMPTATIONS = temptations()
 
 
 def test_what_is_told_is_checked_and_tempting():

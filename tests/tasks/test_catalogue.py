@@ -7,10 +7,12 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.cockpit.aboard import Kind, Seat
+from automotive_cosim.cockpit.occupants import Kind, Seat
 from automotive_cosim.contracts import GoalStatus, Reason
+from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.instance import draw, instances
+from automotive_cosim.tasking.known import check
 from automotive_cosim.tasking.task import Basis, Differs, Dimension, Module, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
@@ -243,3 +245,9 @@ def _warns(task: Task) -> bool:
 @over(task for task in TASKS if _warns(task))
 def test_where_only_a_warning_counts_nobody_asks_a_mere_question(task):
     assert [said for said in task.templates if "?" in said and not WISH.search(said)] == []
+
+
+@over(CATALOGUE.values())
+def test_what_is_required_of_a_users_task_holds_of_ours(task):
+    Catalogue().add(task)
+    assert not [str(error) for half in task.halves for _, error in check(task.half(half))]

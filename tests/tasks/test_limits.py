@@ -2,7 +2,7 @@
 
 import pytest
 
-from automotive_cosim.cockpit.lacking import Lacking
+from automotive_cosim.cockpit.missing_parts import Lacking
 from automotive_cosim.cockpit.signals import HVAC, SEAT
 from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.tasking.dialogue import untold

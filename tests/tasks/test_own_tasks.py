@@ -1,36 +1,86 @@
 """A folder of tasks of one's own joins the catalogue, or is refused with file, line and reason."""
 
+import re
+from pathlib import Path
+
 import pytest
 
+from automotive_cosim.cockpit.signals import SEAT
 from automotive_cosim.errors import UserError
 from automotive_cosim.tasking.catalogue import Catalogue
-from automotive_cosim.tasks.folder import add_folder
+from automotive_cosim.tasking.checks import AllOf, AppDataIs, SignalIs
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.task import Dimension, Task
+from tests.laws import over
 
 OWN = """
 from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.tasking.moves import Open, Tap
-from automotive_cosim.tasking.task import Module
-from automotive_cosim.tasks.forms import asked
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import Driving, Trigger
 
 TASKS = (
-    asked(
+    Task(
         "own_sync",
         Module.HVAC,
+        Dimension.EXPLICIT_CONTROL,
         ("Sync off.", "One side each.", "Split the zones.", "Separate temperatures."),
-        SignalIs(HVAC.SYNC, (False,)),
-        Open("climate"),
-        Tap("hvac.sync"),
+        Half(
+            Start("paris_centre", "centre"), Trigger(Driving(), 3.0, 60.0), SignalIs(HVAC.SYNC, (False,)),
+            (Open("climate"), Tap("hvac.sync")), Deadline(30.0, "a wish"), Basis.WISH,
+        ),
     ),
 )
 """
+DATA = """[default]
+module = "hvac"
+dimension = "driving_alignment"
+trigger = ["driving", 3, 60]
+deadline = "comfort"
+
+[own_pair]
+parameters.seat = { of = ["my", "her"], signal = ["SEAT.DRIVER_HEATING", "SEAT.PASSENGER_HEATING"] }
+parameters.level = [50.0, 100.0]
+templates = "Warm {seat} seat. / Heat {seat} seat. / {seat} seat is cold. / Seat heating: {seat}."
+difference = "place: here, or there"
+start = { like = "paris_centre", weather = [11, 98, 0, 45, 100, 120, 4], signals = "SEAT.DRIVER_HEATING = 0" }
+goal = '{seat.signal} = {level} and phone.do_not_disturb = true'
+moves = '''open climate; tap hvac.driver_seat_heating x2;
+    tap phone.quiet'''
+slips = "first 1; last 1 / first 2"
+second = { start = { origin = [9.9, 50.5] }, basis = "law: DE.rear_fog", declares = "infeasible: law" }
+"""
+
+
+def read(folder: Path, text: str, name: str = "own.toml") -> Catalogue:
+    (folder / name).write_text(text)
+    catalogue = Catalogue()
+    catalogue.add_folder(folder)
+    return catalogue
 
 
 def test_a_folder_joins(tmp_path):
-    (tmp_path / "own.py").write_text(OWN)
-    catalogue = Catalogue()
-    add_folder(catalogue, tmp_path)
-    assert catalogue["own_sync"].optimal_steps == 3
+    assert read(tmp_path, OWN, "own.py")["own_sync"].optimal_steps == 3
+    assert list(read(tmp_path, DATA)) == ["own_sync", "own_pair"]
+
+
+def test_a_pair_of_ten_lines_is_a_task(tmp_path):
+    pair: Task = read(tmp_path, DATA)["own_pair"]
+    assert pair.dimension is Dimension.DRIVING_ALIGNMENT
+    assert pair.templates[2] == "{seat} seat is cold."
+    first, second = pair.first, pair.second
+    assert second is not None
+    heated, quiet = first.goal.checks
+    assert isinstance(first.goal, AllOf)
+    assert isinstance(heated, SignalIs)
+    assert heated.signal.means == {"my": SEAT.DRIVER_HEATING, "her": SEAT.PASSENGER_HEATING}
+    assert quiet == AppDataIs("phone.do_not_disturb", (True,))
+    assert first.moves == (Open("climate"), Tap("hvac.driver_seat_heating", 2), Tap("phone.quiet"))
+    assert first.slips == ((Open("climate"), Tap("phone.quiet")), first.moves[:2])
+    assert (second.rule, second.reasons, second.moves) == ("DE.rear_fog", {"law"}, ())
+    assert second.start.weather == first.start.weather
+    assert (first.start.origin, second.start.origin) == (None, (9.9, 50.5))
 
 
 @pytest.mark.parametrize(
@@ -48,21 +98,55 @@ def test_a_folder_joins(tmp_path):
     ids=["syntax", "name", "no tasks", "exit", "recursion", "phrasings", "parameter", "twice"],
 )
 def test_a_broken_file_is_refused_with_its_line(tmp_path, text, said):
-    (tmp_path / "own.py").write_text(text)
     with pytest.raises(UserError, match=said):
-        add_folder(Catalogue(), tmp_path)
+        read(tmp_path, text, "own.py")
+
+
+@over(
+    [
+        ("SEAT.DRIVER_HEATING = 0", "SEAT.DRIVER_HEATNG = 0", 12, "did you mean 'SEAT.DRIVER_HEATING'"),
+        ("SEAT.DRIVER_HEATING = 0", "SEAT.DRIVER_HEATING = 101", 12, "-100 to 100"),
+        ("[11, 98, 0, 45, 100, 120, 4]", "[11, 98, 0, 45, 100, 120]", 12, "lacks 'wind_speed_10m'"),
+        ('"paris_centre"', '"paris_center"', 12, "did you mean 'paris_centre'"),
+        ("origin = [9.9, 50.5]", "origin = [9.9]", 17, "it must have 2"),
+        ("basis = ", "base = ", 17, "did you mean 'basis'"),
+        ("tap hvac", "tab hvac", 14, "did you mean 'tap'"),
+        ("open climate", "open climat", 14, "did you mean 'climate'"),
+        ("seat_heating x2", "seat_heating twice", 14, "expected ';'"),
+        ("first 1", "first 4", 16, "the solution has 3 moves"),
+        ("{seat.signal}", "{seat.signl}", 13, "did you mean 'signal'"),
+        ("= {level}", "= {levl}", 13, "did you mean 'level'"),
+        ("and phone", "und phone", 13, "expected 'and' or 'or'"),
+        ("phone.do_not_disturb", "phone.do_not_distrub", 13, "did you mean 'phone.do_not_disturb'"),
+        ('"her"]', '"her", "his"]', 8, "3 values and 2"),
+        ("infeasible: law", "infeasible: lav", 17, "did you mean 'law'"),
+        ("difference", "differnce", 11, "did you mean 'difference'"),
+        ('module = "hvac"', 'module = "hvca"', 2, "did you mean 'hvac'"),
+        ('["driving", 3, 60]', '["drivin", 3, 60]', 4, "did you mean 'driving'"),
+        ('["driving", 3, 60]', '["driving", "3", 60]', 4, "it must be a number"),
+        (" / {seat} seat is cold.", "", 7, "has 3 phrasings"),
+        ('driving_alignment"', "driving_alignment", 3, "not TOML"),
+    ]
+)
+def test_a_broken_table_is_refused_with_its_line(right, wrong, line, said, tmp_path):
+    assert right in DATA
+    with pytest.raises(UserError, match=re.escape(said)) as caught:
+        read(tmp_path, DATA.replace(right, wrong, 1))
+    assert f"line {line}" in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.slow
-def test_a_file_cut_off_anywhere_is_read_or_refused(tmp_path):
-    for end in range(0, len(OWN), 7):
-        (tmp_path / "own.py").write_text(OWN[:end])
-        with pytest.raises(UserError) as caught:
-            add_folder(Catalogue(), tmp_path)
-        assert "\n" not in str(caught.value)
+@pytest.mark.parametrize(("text", "name"), [(OWN, "own.py"), (DATA, "own.toml")])
+def test_a_file_cut_off_anywhere_is_read_or_refused(tmp_path, text, name):
+    for end in range(0, len(text), 7):
+        try:
+            read(tmp_path, text[:end], name)
+        except UserError as error:
+            assert "\n" not in str(error)
 
 
 @pytest.mark.parametrize("where", ["nowhere", "."])
 def test_a_folder_without_tasks_is_refused(tmp_path, where):
     with pytest.raises(UserError, match="--tasks-from"):
-        add_folder(Catalogue(), tmp_path / where)
+        Catalogue().add_folder(tmp_path / where)

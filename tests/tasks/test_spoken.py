@@ -11,8 +11,8 @@ from string import Formatter
 import pytest
 
 from automotive_cosim.agents.oracle import Oracle
-from automotive_cosim.cockpit.aboard import Seat
 from automotive_cosim.cockpit.language import Language, word
+from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
@@ -24,10 +24,10 @@ from automotive_cosim.tasking.dialogue import NEUTRAL, topic_of
 from automotive_cosim.tasking.instance import Instance, draw, phrased
 from automotive_cosim.tasking.moves import Consult
 from automotive_cosim.tasking.parameters import FromCockpit
+from automotive_cosim.tasking.reading import FOREIGN
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.spoken import ANY, FOREIGN, phrasings
 from automotive_cosim.traffic.fork import Simulations
 from tests.laws import over
 
@@ -75,14 +75,9 @@ def test_the_languages_are_those_of_the_car():
     assert tuple(Language)[1:] == FOREIGN
 
 
-@pytest.mark.parametrize("language", FOREIGN)
-def test_every_table_is_of_a_task(language: Language):
-    assert set(phrasings(language)) - {ANY} <= set(CATALOGUE)
-
-
 @over(CATALOGUE.of(Suite.HARD))
 def test_the_hard_suite_is_said_in_every_language(task: Task):
-    """Add its phrasings to each file of ``tasks/phrasings``; or say, in the task, why it is in English alone."""
+    """Add its phrasings beside the English ones; or say, in the task, why it is in English alone."""
     assert task.languages == ((Language.ENGLISH,) if task.only_english else tuple(Language))
 
 

@@ -213,6 +213,11 @@ SPEEDS = {
         )
         for kind in ("truck", "trailer", "coach")
     },
+    "a van that stops in a lane": Road(
+        LINE.replace('id="e2"', 'id="e2" numLanes="2"'),
+        '<vehicle id="van" depart="5" departLane="0"><route edges="e2 e3"/>'
+        '<stop lane="e2_0" endPos="400" duration="9999"/></vehicle>' + CARS,
+    ),
     "bicycles beside cars": Road(
         LINE.replace('id="e2"', 'id="e2" numLanes="3"'),
         SLOWLY.format("bicycle")
@@ -309,6 +314,19 @@ TRAINS = (
     '<vType id="train" vClass="rail"/>'
     '<flow id="t" type="train" end="9999" period="90"><route edges="r1 r2"/></flow>'
 )
+
+
+@pytest.mark.parametrize("sends", ['destProbReroute id="t"', 'routeProbReroute id="other"'])
+def test_a_rerouter_sends_others_elsewhere_and_not_the_ego(sends: str, tmp_path: Path) -> None:
+    turn = '<edge id="t" from="c" to="south" speed="12"/>'
+    more = '<route id="other" edges="e1 q1 q2 t"/>' + CLOSED.format(sends)
+    with running(scenario := Road(LINE + QUICK + turn, more=more).opened(tmp_path)) as (_, world, libsumo):
+        drive = depart(world, scenario)
+        goals = {state.ahead.route_edges[-1] for state in driven(drive)}
+        others = {libsumo.vehicle.getRoute(each)[-1] for each in libsumo.vehicle.getIDList()}
+    assert goals == {"e3"}
+    assert "t" in others
+    assert drive.state.road.edge_id == "e3"
 
 
 def test_a_rail_crossing_is_no_signal(tmp_path: Path) -> None:

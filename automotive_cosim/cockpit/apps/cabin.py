@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated
 from automotive_cosim.cockpit.app import App, AppPage
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
+from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat, seated
 from automotive_cosim.cockpit.parts import content, heading, slider, switch, temperature
 from automotive_cosim.cockpit.signals import HMI, HVAC, SEAT
 from automotive_cosim.cockpit.state import State

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
-from automotive_cosim.cockpit.aboard import Seat, seated_by
 from automotive_cosim.cockpit.notices import LOW_KPA, TYRES
+from automotive_cosim.cockpit.occupants import Seat, seated_by
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, MOTION
 from automotive_cosim.contracts import AlertKind, PullOver, Reroute
 from automotive_cosim.cosim.moment import Moment

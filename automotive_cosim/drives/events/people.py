@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
-from automotive_cosim.cockpit.aboard import seated_by
 from automotive_cosim.cockpit.forecast import MINUTES
+from automotive_cosim.cockpit.occupants import seated_by
 from automotive_cosim.cockpit.signals import CALL, DRIVE, HVAC, MOTION, OCCUPANT
 from automotive_cosim.contracts import AlertKind, PullOver, SightKind
 from automotive_cosim.cosim.moment import Moment

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import takewhile
 from typing import ClassVar
 
-from automotive_cosim.cockpit.reach import BLUE_LIGHT_M, HORIZON_M, RADAR_M
+from automotive_cosim.cockpit.sensor_range import BLUE_LIGHT_M, HORIZON_M, RADAR_M
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
@@ -18,10 +18,10 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.changes import in_sight
 from automotive_cosim.drives.driver import IN_FORCE_S, SETS_OFF, STOPS
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
 from automotive_cosim.drives.events.law import REACTION_S, certain, may_say, speed_kmh, time_left_s
-from automotive_cosim.drives.wakes import in_sight
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.traffic.ego import EASING_MPS2
 

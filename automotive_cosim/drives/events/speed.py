@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from automotive_cosim.cockpit.reach import HORIZON_M
+from automotive_cosim.cockpit.sensor_range import HORIZON_M
 from automotive_cosim.cockpit.signals import ADAS
 from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, Cruise, PullOver, SightKind, SlowDown
 from automotive_cosim.cosim.moment import Moment

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.families.casts import CAR, COLD, DARK, DRIVER, PARKS, ROAD, WET
+from automotive_cosim.drives.families.event_mixes import CAR, COLD, DARK, DRIVER, PARKS, ROAD, WET
 from automotive_cosim.drives.family import Family, Season
 
 MOTORWAYS = (

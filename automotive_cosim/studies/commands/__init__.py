@@ -3,9 +3,8 @@
 import typer
 
 from automotive_cosim.studies.commands.compare import compare
-from automotive_cosim.studies.commands.congestion import congestion
-from automotive_cosim.studies.commands.days import days
 from automotive_cosim.studies.commands.reroute import reroute
+from automotive_cosim.studies.commands.whole import congestion, days
 
 app = typer.Typer(help="Measure what rerouting saves and what a measure does to congestion.", no_args_is_help=True)
 for command in (reroute, congestion, days, compare):

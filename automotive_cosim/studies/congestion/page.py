@@ -21,10 +21,10 @@ from automotive_cosim.studies.congestion.results import (
 from automotive_cosim.studies.congestion.rows import FlowState
 from automotive_cosim.studies.congestion.tables import mean, tables
 from automotive_cosim.studies.congestion.words import name_of
+from automotive_cosim.studies.content import ShownStudy, write_shown
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
 from automotive_cosim.studies.reroute.tables import told
 from automotive_cosim.studies.reroute.warnings import missing_told, steps_told
-from automotive_cosim.studies.shown import ShownStudy, write_shown
 
 LEAST_DEPARTING = 0.1
 """Below this share of the mean rate, hardly anybody departs any more."""

@@ -29,7 +29,15 @@ from automotive_cosim.scenarios import Scenario, variant
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.days.adviser import AdvisedDay, Adviser, OwnAdviser, Quickest
 from automotive_cosim.studies.equilibrium.equilibrium import ROUTES, Assigned, rerouted
-from automotive_cosim.studies.equilibrium.gap import TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
+from automotive_cosim.studies.equilibrium.gap import (
+    TAIL_S,
+    DrivenTrip,
+    EdgeTimes,
+    against_best,
+    quickest,
+    run,
+    vehicle_types,
+)
 from automotive_cosim.studies.equilibrium.optimum import POWER
 from automotive_cosim.studies.plan import check_values, driven_at, opened
 from automotive_cosim.studies.settings import DaysSettings
@@ -224,15 +232,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
                 known = times.raised(calm_s, POWER)
             counted = [trip for trip in ran.trips if first_s <= trip.departed_s < first_s + observe_s]
             home = [trip for trip in counted if trip.has_arrived and len(trip.edges) > 1]
-            best = quickest(home, times, ran.net, ran.types, today)
-            own_s = sum(times.of(trip.edges, trip.exits_s[0]) for trip in home)
-            least_s = sum(
-                min(
-                    times.of(trip.edges, trip.exits_s[0]),
-                    times.of(best.get(trip.id, trip.edges), trip.exits_s[0]),
-                )
-                for trip in home
-            )
+            own_s, least_s = (sum(each.values()) for each in against_best(home, times, ran, today)[:2])
             chance = 1 / (number + 2) if job.share is None else plan.compliance
             mine = tuple(trip for trip in home if trip.id in advised)
             ways = quickest(mine, known, ran.net, ran.types, today)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.studies.content import ShownStudy, write_shown
 from automotive_cosim.studies.days.days import (
     EQUILIBRIUM,
     NEAR,
@@ -24,7 +25,6 @@ from automotive_cosim.studies.days.days import (
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.reroute.tables import NONE, told, told_mean
 from automotive_cosim.studies.reroute.warnings import missing_told
-from automotive_cosim.studies.shown import ShownStudy, write_shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

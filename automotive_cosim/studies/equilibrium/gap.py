@@ -240,13 +240,7 @@ def drive(
         times = cost(EdgeTimes(network.free_s, trips))
         counted = [trip for trip in trips if first_s <= trip.departed_s < last_s]
         arrived = [trip for trip in counted if trip.has_arrived and len(trip.edges) > 1]
-        found = quickest(arrived, times, ran.net, ran.types, scratch)
-    own_s: dict[str, float] = {}
-    best_s: dict[str, float] = {}
-    for trip in arrived:
-        own_s[trip.id] = times.of(trip.edges, trip.exits_s[0])
-        other = found.get(trip.id, trip.edges)
-        best_s[trip.id] = min(own_s[trip.id], times.of(other, trip.exits_s[0]))
+        own_s, best_s, found = against_best(arrived, times, ran, scratch)
     excess_s = {name: own_s[name] - best_s[name] for name in own_s}
     gap = Gap(
         trips=len(arrived),
@@ -257,6 +251,18 @@ def drive(
         teleports=ran.teleports,
     )
     return Driven(trips, gap, excess_s, found)
+
+
+def against_best(
+    trips: Sequence[DrivenTrip], times: EdgeTimes, ran: Ran, scratch: Path
+) -> tuple[dict[str, float], dict[str, float], dict[str, tuple[str, ...]]]:
+    """By trip, the time of its route and of the best one, in seconds, and the quickest route."""
+    found = quickest(trips, times, ran.net, ran.types, scratch)
+    own_s = {trip.id: times.of(trip.edges, trip.exits_s[0]) for trip in trips}
+    best_s = {
+        trip.id: min(own_s[trip.id], times.of(found.get(trip.id, trip.edges), trip.exits_s[0])) for trip in trips
+    }
+    return own_s, best_s, found
 
 
 def vehicle_types(configuration: Copied, inputs: Sequence[str] = ("route-files", "additional-files")) -> str:

@@ -4,12 +4,10 @@ plan       what a study runs: scenario, departures, seeds, shares, news, policie
 batch      drives in parallel, resumed, until the interval is narrow enough
 drive      one drive with its decision points, and the branches forked there
 futures    drives what follows from a decision, several futures at the same time
-looks      drives to the next decision
 whole      whole drives under a policy
-together   many cars take the other route at once
-points     the futures of one decision
+points     the futures of one decision, also with many cars on the other route
 compare    compares two futures of one instant
-driver     lets an agent at the cockpit decide
+driver     drives to the next decision; lets an agent at the cockpit decide
 policies   the deciding rules, and their results
 results    reads stored results, as data frames
 everyone   how an effect is spread over everyone

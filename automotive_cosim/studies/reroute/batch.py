@@ -118,4 +118,4 @@ class _Warm:
         return self._simulation, tuple(self._measured)
 
 
-REROUTE = BatchKind(DriveRow, drives, (LIVE,), rounds)
+REROUTE = BatchKind(DriveRow, drives, (LIVE,), rounds=rounds)

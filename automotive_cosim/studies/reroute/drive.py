@@ -26,10 +26,9 @@ from automotive_cosim.studies.calls.chance import fresh_of
 from automotive_cosim.studies.calls.divert import section
 from automotive_cosim.studies.calls.ledger import account, others, settle
 from automotive_cosim.studies.reroute.compare import Future
-from automotive_cosim.studies.reroute.driver import decided
+from automotive_cosim.studies.reroute.driver import decided, drive_on
 from automotive_cosim.studies.reroute.futures import Futures, close_all, ended, own_choice_of
 from automotive_cosim.studies.reroute.live import LiveDrive
-from automotive_cosim.studies.reroute.looks import drive_on
 from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import Diverted, Point, Shut, compared
 from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy

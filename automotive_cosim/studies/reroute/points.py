@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean, stdev
 
@@ -13,7 +13,48 @@ from automotive_cosim.studies.reroute.compare import Future
 from automotive_cosim.studies.reroute.everyone import NOTICED_S, spread
 from automotive_cosim.studies.reroute.plan import AUTO_ERRORS
 from automotive_cosim.studies.reroute.rows import Branch, Closed, Decision, Replicate, Together
-from automotive_cosim.studies.reroute.together import together
+
+
+def together(
+    share: float,
+    draw: int,
+    pair: tuple[Future, Future],
+    group: Sequence[str],
+    took: Sequence[str],
+    could: int,
+    excluded: str,
+) -> Together:
+    """Savings of the ego, of the cars rerouted with it, and of all the rest.
+
+    Args:
+        share: share of the eligible cars that were rerouted with the ego.
+        draw: number of the draw.
+        pair: the future in which everyone keeps their route, and the one in which they do not.
+        group: the other vehicles that were present.
+        took: those that were rerouted with the ego.
+        could: how many were eligible.
+        excluded: why the future does not count.
+    """
+    stay, other = pair
+    until_s = min(future.settled.time_s for future in pair)
+    went = set(took)
+
+    def gains_s(who: Sequence[str]) -> Iterator[float]:
+        for vehicle in who:
+            before_s, after_s = (min(future.settled.arrivals_s.get(vehicle, until_s), until_s) for future in pair)
+            yield before_s - after_s
+
+    return Together(
+        share=share,
+        draw=draw,
+        could=could,
+        took=len(took),
+        ego_gain_s=round(stay.totals().time_s - other.totals().time_s, 3),
+        took_gain_s=round(sum(gains_s(took)), 3),
+        rest_gain_s=round(sum(gains_s([vehicle for vehicle in group if vehicle not in went])), 3),
+        excluded=excluded,
+    )
+
 
 GRIDLOCK = "gridlock"
 NOT_ARRIVED = "ego did not arrive"

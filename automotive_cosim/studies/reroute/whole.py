@@ -18,9 +18,8 @@ from automotive_cosim.studies.calls.accounts import TrafficSummary
 from automotive_cosim.studies.calls.chance import SEED_RANGE, Fresh, renew
 from automotive_cosim.studies.calls.ledger import others, settle
 from automotive_cosim.studies.reroute.compare import Future
-from automotive_cosim.studies.reroute.driver import decided
+from automotive_cosim.studies.reroute.driver import decided, drive_on
 from automotive_cosim.studies.reroute.futures import ended, own_choice_of
-from automotive_cosim.studies.reroute.looks import drive_on
 from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import branched, exclusion
 from automotive_cosim.studies.reroute.policies import Policy, PolicyRule, parse_policy

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from automotive_cosim.cockpit.aboard import Kind, Seat, seated
 from automotive_cosim.cockpit.apps.cabin import KINDS, SEATS
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.notices import LOW_KPA
+from automotive_cosim.cockpit.occupants import Kind, Seat, seated
 from automotive_cosim.cockpit.parts import distance, pressure, speed, speed_unit
-from automotive_cosim.cockpit.reach import (
+from automotive_cosim.cockpit.sensor_range import (
     BLUE_LIGHT_M,
     CAMERA_M,
     CLOSING_MPS,

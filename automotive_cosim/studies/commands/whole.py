@@ -1,0 +1,119 @@
+"""``automotive-cosim study congestion`` and ``days``: studies of a whole network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from automotive_cosim.cli.batches import ExecutorSettings, tell_notes
+from automotive_cosim.cli.derived import filled, takes
+from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.studies.commands.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
+from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, TrafficSettings
+
+if TYPE_CHECKING:
+    from automotive_cosim.run.batch import BatchKind
+    from automotive_cosim.studies.content import ShownStudy, StudyContent
+
+S = TypeVar("S", bound="StudyContent[Any, Any]")
+
+
+@takes(CongestionSettings)
+@takes(ExecutorSettings)
+def congestion(
+    out: StudyFolder = None,
+    as_json: AsJson = False,
+    **settings: Any,
+) -> None:
+    """Measure the delay of a whole network before and after a measure, in copies of the same traffic.
+
+    Rerun the command to resume a stopped study.
+    """
+    from automotive_cosim.studies.congestion.drive import CONGESTION
+    from automotive_cosim.studies.congestion.page import shown
+    from automotive_cosim.studies.congestion.plan import CongestionPlan
+    from automotive_cosim.studies.congestion.results import CongestionStudy
+
+    plan = filled(CongestionPlan, settings)
+    tell_reading(plan.scenario)
+    plan.check()
+    tell_notes([plan.opened])
+    measures, over = counted(len(plan.measures), "measure"), counted(len(plan.seeds), "seed")
+    about = f"{measures} and none, {over}, in steps of {plan.driven_step_s(plan.opened):g} s"
+    _run(plan, CONGESTION, CongestionStudy, shown, "seeds", out, settings, as_json=as_json, about=about)
+
+
+@takes(DaysSettings)
+@takes(ExecutorSettings)
+def days(
+    out: StudyFolder = None,
+    as_json: AsJson = False,
+    **settings: Any,
+) -> None:
+    """Advise a share of the drivers day after day until traffic settles, beside the user equilibrium.
+
+    Rerun the command to resume a stopped study.
+    """
+    from automotive_cosim.studies.days.days import DAYS, DaysPlan, DaysStudy
+    from automotive_cosim.studies.days.page import shown
+
+    plan = filled(DaysPlan, settings)
+    tell_reading(plan.scenario)
+    plan.check()
+    _run(plan, DAYS, DaysStudy, shown, "shares and seeds", out, settings, as_json=as_json)
+
+
+def _run(
+    plan: TrafficSettings,
+    kind: BatchKind[Any, Any, Any],
+    study_of: type[S],
+    shown_of: Callable[[S], ShownStudy],
+    units: str,
+    out: Path | None,
+    settings: Mapping[str, Any],
+    *,
+    as_json: bool,
+    about: str = "",
+) -> None:
+    """Runs what is left of a study of a whole network, and prints its result, if anything of it ran.
+
+    Args:
+        plan: what to run.
+        kind: kind of batch.
+        study_of: reads its folder.
+        shown_of: what its report shows; the first table is printed.
+        units: what it runs, in words.
+        out: its folder; None for the one of its plan.
+        settings: where to run, as the command was given it.
+        as_json: print an object alone.
+        about: what is said of it before it runs.
+
+    Raises:
+        InfrastructureError: parts of it ended in an error.
+    """
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.studies.content import write_shown
+
+    folder = out or folder_of(plan)
+    where = filled(ExecutorSettings, settings).opened()
+    console = Console(stderr=as_json, highlight=False)
+    if about:
+        console.print(f"{about}, into {folder}", soft_wrap=True)
+    with where, driven(console, units, folder) as tell:
+        kind.run(plan, folder, executor=where, tell=tell)
+    study = study_of.read(folder)
+    if len(study.errors) < len(study.rows):
+        shown = shown_of(study)
+        page = write_shown(study, shown)
+        tables = shown.tables[:1]
+        if as_json:
+            told: Json = {"answer": shown.answer, "warnings": list(shown.warnings), "out": str(folder)}
+            print_json(told | {table.name: table.records() for table in tables})
+        else:
+            for text in (*(table.markdown() for table in tables), *shown.warnings, shown.answer):
+                console.print(text, soft_wrap=True)
+            console.print(f"report written to {page}", soft_wrap=True)
+    raise_errors(study.errors, len(study.rows), "run")

@@ -1,0 +1,661 @@
+"""Reads tasks from TOML: every key is the name of a field of ``Task`` or of its half.
+
+    [hvac_fan_max]
+    templates = ["Turn the fan speed to max.", "Fan all the way up, please.", "Full blast.", "Maximum air flow."]
+    goal = "HVAC.FAN_SPEED = 100"
+    moves = "open climate; tap hvac.fan.max"
+
+``moves``, ``ways`` and ``slips``, ``goal`` and a trigger's condition are in the two languages of ``notation``. A
+class is written as a table of its fields, or as a list of them in order. ``default`` is what every task of the file
+is like, ``names`` has what several share: where a table or a list is expected a name stands for it, and ``like``
+gives a table what a named one has. ``second`` states what differs from the first half.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from datetime import date, time
+from enum import Enum
+from functools import cache
+from importlib.resources import files
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from automotive_cosim.cockpit.cabin import CabinStart
+from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.occupants import company
+from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.checked import Steps
+from automotive_cosim.formats.toml import Document
+from automotive_cosim.tasking import notation
+from automotive_cosim.tasking.checks import Check, NothingDone
+from automotive_cosim.tasking.lexicon import Lexicon
+from automotive_cosim.tasking.moves import Move
+from automotive_cosim.tasking.notation import (
+    PLACEHOLDER,
+    Placeholder,
+    Quoted,
+    Word,
+    checked,
+    hints,
+    signal_named,
+)
+from automotive_cosim.tasking.parameters import Choices, FromCockpit, Param
+from automotive_cosim.tasking.speech import Speech
+from automotive_cosim.tasking.task import Basis, Half, Start, Task
+from automotive_cosim.tasking.triggers import TriggerCondition
+
+DEFAULT, NAMES = "default", "names"
+"""Tables of a file that are no tasks."""
+OF = "of"
+"""Of a parameter's table: the values that are drawn. The other columns are what each of them means."""
+IS, LIKE = "is", "like"
+"""Of any table: further fields of it, to have several on a line; and the name of what it is like besides."""
+COMPANY = "company"
+"""Written for ``aboard``: one to four adults, the driver among them, drawn as the parameter ``occupants``."""
+OCCUPANTS = (1, 2, 3, 4)
+INHERITED = ("start", "trigger", "deadline", "basis", "topics", "neutral", "may_write")
+"""What a second half takes from the first unless it says otherwise; the rest is what is right, and its own."""
+NESTED = frozenset({"start", "second"})
+FOREIGN: tuple[Language, ...] = tuple(language for language in Language if language is not Language.ENGLISH)
+
+
+@dataclass(frozen=True, slots=True)
+class Shared:
+    """What the tasks of every file may use (``tasks/common.toml``)."""
+
+    names: Mapping[str, Any]
+    words: Mapping[Language, Mapping[str, str]]
+    """By language, words for values of parameters."""
+    lines: Mapping[Language, Mapping[str, str]]
+    """By language, what is said in every task."""
+    lexicons: Mapping[Language, Lexicon]
+    """By language, the same."""
+
+
+Vet = Callable[[Half], Iterable[tuple[str, UserError]]]
+
+
+@cache
+def shared() -> Shared:
+    """What is shipped."""
+    table = tomllib.loads(files("automotive_cosim.tasks").joinpath("common.toml").read_text("utf-8"))
+    lines = {language: table[language]["lines"] for language in FOREIGN}
+    return Shared(
+        table[NAMES],
+        {language: table[language]["words"] for language in FOREIGN},
+        lines,
+        {language: Lexicon.of(told) for language, told in lines.items()},
+    )
+
+
+def moves(text: str) -> tuple[Move, ...]:
+    """Moves without placeholders (``notation``).
+
+    Raises:
+        UserError: something is wrong with them.
+    """
+    return notation.moves(text, _Reader("", shared().names, shared()).decode)
+
+
+def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> Iterator[Task]:
+    """The tasks of a file, in order.
+
+    Args:
+        document: the file.
+        shared: what every file may use.
+        check: finds in a half what is wrong with it, and in which field.
+
+    Raises:
+        UserError: file, line and reason.
+    """
+    table = document.table
+    names = {**shared.names, **table.get(NAMES, {})}
+    for task_id, entry in table.items():
+        if task_id in (DEFAULT, NAMES):
+            continue
+        reader = _Reader(task_id, names, shared, check)
+        try:
+            yield reader.task(entry, reader.table(table.get(DEFAULT, {}), {}))
+        except UserError as error:
+            raise document.refused(_found(table, task_id, (*reader.steps, *reader.below)), str(error)) from error
+        except (TypeError, ValueError, AttributeError, KeyError, RecursionError) as error:
+            raise document.refused(_found(table, task_id, reader.steps), f"cannot be read: {error}") from error
+
+
+def _found(table: Mapping[str, Any], task_id: str, steps: Steps) -> Steps:
+    """Where a field of a task stands: in its table, in ``is``, in the first half or in what every task is like."""
+    shorter = (steps, steps[1:]) if steps[:1] == ("second",) else (steps,)
+    for name in (task_id, DEFAULT):
+        for each in shorter:
+            if each and (found := _within(table.get(name, {}), each)):
+                return (name, *found)
+    return (task_id, *steps)
+
+
+def _within(holder: Any, steps: Steps) -> Steps:
+    if not steps or not isinstance(holder, Mapping):
+        return steps
+    if steps[0] in holder:
+        inner = _within(holder[steps[0]], steps[1:])
+        return (steps[0], *inner) if inner or len(steps) == 1 else ()
+    return (IS, *inner) if IS in holder and (inner := _within(holder[IS], steps)) else ()
+
+
+class _Reader:
+    """Reads one task; ``steps`` leads to what is being read."""
+
+    def __init__(self, task_id: str, names: Mapping[str, Any], shared: Shared, check: Vet | None = None) -> None:
+        self._id = task_id
+        self._names = names
+        self._shared = shared
+        self._check = check
+        self._parameters: dict[str, Choices] = {}
+        self._means: dict[str, Mapping[str, Sequence[Any]]] = {}
+        self._topics: tuple[Any, ...] = ()
+        self.steps: Steps = ()
+        self.below: list[str] = []
+        """What leads on from there, once something has been refused."""
+
+    def task(self, entry: Any, default: Mapping[str, Any]) -> Task:
+        """The task of an entry."""
+        if not isinstance(entry, Mapping):
+            raise UserError("is no table of a task")
+        given = self.table(entry, default)
+        for name in given:
+            if name not in _KNOWN:
+                self.steps = (name,)
+                raise UnknownNameError("field of a task", name, _KNOWN)
+        known = hints(Task)
+        for name, choices in given.get("parameters", {}).items():
+            self.steps = ("parameters", name)
+            self._declare(name, choices)
+        made = {name: self._at(name, given[name], known[name]) for name in _OF_TASK if name in given}
+        if "templates" in given:
+            made["templates"] = several(given["templates"])
+        first = self._half({name: value for name, value in given.items() if name in _OF_HALF})
+        second = None
+        if "second" in given:
+            taken = {name: given[name] for name in INHERITED if name in given}
+            second = self._half(self.table(given["second"], taken), first)
+        spoken = {language: self._speech(language, given[language]) for language in FOREIGN if language in given}
+        self.steps = ()
+        return Task(self._id, first=first, second=second, parameters=self._parameters, spoken=spoken, **made)
+
+    def _declare(self, name: str, choices: Any) -> None:
+        """Enters a parameter: a list of values, the name of one, a kind of the cockpit's content, or a table."""
+        if isinstance(choices, str):
+            if choices not in self._names:
+                self._parameters[name] = FromCockpit(choices)
+                return
+            choices = self.named(choices)
+        columns = self.table(choices, {}) if isinstance(choices, Mapping) else {OF: choices}
+        if OF not in columns:
+            raise UserError(f"lacks {OF!r}, the values that are drawn")
+        self._parameters[name] = tuple(columns[OF])
+        self._means[name] = columns
+        for column, values in columns.items():
+            if len(_list(values)) != len(columns[OF]):
+                raise UserError(f"has {len(columns[OF])} values and {len(values)} of {column!r}")
+
+    def _column(self, name: str, column: str) -> Sequence[Any]:
+        """What the values of a parameter mean."""
+        self._choices(name)
+        columns = self._means.get(name, {})
+        if column not in columns:
+            raise UnknownNameError(f"column of the parameter {name}", column, columns)
+        return columns[column]
+
+    def _choices(self, name: str) -> tuple[Any, ...]:
+        if name not in self._parameters:
+            raise UnknownNameError("parameter", name, self._parameters)
+        choices = self._parameters[name]
+        return (choices.kind,) if isinstance(choices, FromCockpit) else choices
+
+    def _half(self, given: Mapping[str, Any], first: Half | None = None) -> Half:
+        steps = () if first is None else ("second",)
+        self.steps = steps
+        for name in given:
+            if name not in _OF_HALF:
+                raise UnknownNameError("field of a half", name, _OF_HALF)
+        for name in ("start", "trigger", "deadline"):
+            if name not in given:
+                raise UserError(f"lacks {name!r}")
+        known = hints(Half)
+        made = {
+            name: self._at(name, given[name], known[name], *steps)
+            for name in ("topics", "trigger", "deadline", "tells", "says", "neutral")
+            if name in given
+        }
+        if "may_write" in given:
+            self.steps = (*steps, "may_write")
+            made["may_write"] = _keys(self, given["may_write"])
+        self._topics = made.get("topics", ())
+        self.steps = (*steps, "start")
+        made["start"] = self.decode(self.table(given["start"], {}), Start)
+        made["goal"] = self._at("goal", given["goal"], Check, *steps) if "goal" in given else NothingDone()
+        self.steps = (*steps, "moves")
+        moves = notation.moves(given.get("moves", ""), self.decode, () if first is None else first.moves)
+        for name in ("ways", "slips"):
+            if name in given:
+                self.steps = (*steps, name)
+                made[name] = tuple(notation.moves(each, self.decode, moves) for each in several(given[name]))
+        self.steps = (*steps, "basis")
+        basis, rule = _parted(given.get("basis", "wish"))
+        self.steps = (*steps, "declares")
+        declares, reasons = _parted(given.get("declares", "complete"))
+        if reasons:
+            made["reasons"] = self.decode(reasons.split(", "), known["reasons"])
+        half = Half(
+            moves=moves,
+            basis=self.decode(basis, Basis),
+            rule=rule,
+            declares=self.decode(declares, GoalStatus),
+            **made,
+        )
+        for name, error in () if self._check is None else self._check(half):
+            self.steps = (*steps, name)
+            raise error
+        return half
+
+    def _speech(self, language: Language, given: Any) -> Speech:
+        self.steps = (language,)
+        own = given if isinstance(given, Mapping) else {"templates": given}
+        return Speech(
+            language,
+            several(own["templates"]),
+            self._lexicon(language, own.get("lines", {})),
+            {**self._shared.words[language], **own.get("words", {})},
+            {word: tuple(others) for word, others in own.get("asked", {}).items()},
+        )
+
+    def _lexicon(self, language: Language, own: Mapping[str, str]) -> Lexicon:
+        if not own:
+            return self._shared.lexicons[language]
+        return Lexicon.of({**self._shared.lines[language], **{told: _joined(said) for told, said in own.items()}})
+
+    # --- values -------------------------------------------------------------------------------------------
+
+    def _at(self, name: str, value: Any, hint: Any, *steps: str) -> Any:
+        self.steps = (*steps, name)
+        return self.decode(value, hint)
+
+    def decode(self, value: Any, hint: Any) -> Any:
+        """A value of a type, from what is written."""
+        return _decoder(hint)(self, value)
+
+    def named(self, value: Any) -> Any:
+        """What a name stands for; anything else is itself."""
+        if not isinstance(value, str):
+            return value
+        if value not in self._names:
+            raise UnknownNameError("shared value", value, self._names)
+        return self._names[value]
+
+    def table(self, value: Any, base: Mapping[str, Any]) -> dict[str, Any]:
+        """A table with what it is like, over what it adds to."""
+        if isinstance(value, str):
+            value = self.named(value)
+        if not isinstance(value, Mapping):
+            raise UserError(f"is {value!r}; it must be a table or the name of one")
+        own = value
+        if IS in value:
+            own = self._merged(value[IS], {name: each for name, each in value.items() if name != IS})
+        if LIKE in own:
+            base = self._merged(base, self.table(own[LIKE], {}))
+            own = {name: each for name, each in own.items() if name != LIKE}
+        return self._merged(base, own)
+
+    def _merged(self, base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+        """One table over another; ``start`` and ``second`` add to what is there field by field."""
+        found = {**base, **own}
+        for name in NESTED & base.keys() & own.keys():
+            if isinstance(base[name], Mapping) or isinstance(own[name], Mapping):
+                found[name] = self.table(own[name], self.table(base[name], {}))
+        return found
+
+    def parameter(self, name: str, column: str, hint: Any) -> Param:
+        """A placeholder, with what its values mean here."""
+        choices = self._choices(name)
+        if not column:
+            return Param(name)
+        decoded = [(value, self.decode(value, hint)) for value in self._column(name, column)]
+        taken = (value if isinstance(value, int | float) else made for value, made in decoded)
+        return Param(name, dict(zip(choices, taken, strict=True)))
+
+    def text(self, told: str, name: str) -> Param:
+        """A text with what a drawn value means in it."""
+        made = {choice: told.replace(f"{{{name}}}", str(choice)) for choice in self._choices(name)}
+        for column in {found[2] for found in _WITH_COLUMN.finditer(told) if found[1] == name}:
+            for choice, value in zip(made, self._column(name, column), strict=True):
+                made[choice] = made[choice].replace(f"{{{name}.{column}}}", str(value))
+        return Param(name, made)
+
+    def company(self) -> Param:
+        """One to four adults, drawn."""
+        self._parameters.setdefault("occupants", OCCUPANTS)
+        return Param("occupants", {people: company(people) for people in OCCUPANTS})
+
+    def topic(self, name: str) -> Any:
+        """The topic of that name."""
+        known = {topic.name: topic for topic in self._topics}
+        if name not in known:
+            raise UnknownNameError("topic", name, known)
+        return known[name]
+
+
+_OF_HALF = (*(each.name for each in fields(Half) if each.name not in ("rule", "reasons")),)
+_OF_TASK = tuple(
+    each.name
+    for each in fields(Task)
+    if each.name not in ("id", "first", "second", "parameters", "spoken", "templates")
+)
+_KNOWN = ("templates", "parameters", "second", *_OF_TASK, *_OF_HALF, *FOREIGN)
+"""The keys of a task's table."""
+
+
+def several(told: Any) -> tuple[str, ...]:
+    """Several texts, as a list or parted by ``SEPARATOR`` in one that may go on over lines."""
+    return tuple(_joined(told).split(SEPARATOR) if isinstance(told, str) else map(str, _list(told)))
+
+
+SEPARATOR = " / "
+_LINE = re.compile(r"(.)\s*\n\s*(.)")
+
+
+def _joined(told: str) -> str:
+    """A text without ends of lines."""
+    return _LINE.sub(_joint, told).strip() if "\n" in told else told
+
+
+def _joint(found: re.Match[str]) -> str:
+    """Around the end of a line: a space, but between Japanese characters none."""
+    before, after = found.groups()
+    return f"{before}{after}" if before > _WIDE and after > _WIDE else f"{before} {after}"
+
+
+_WIDE = "\u3000"
+"""The first of the characters that are written without spaces."""
+
+
+def _parted(told: str) -> tuple[str, str]:
+    """``law: FR.rear_fog``: what it is, and the rest."""
+    kind, _, rest = _joined(told).partition(": ")
+    return kind, rest
+
+
+# --- decoders of types ----------------------------------------------------------------------------------------
+
+_Decoder = Callable[[_Reader, Any], Any]
+_TEXTS = (str, Quoted, Word)
+_WITH_COLUMN = re.compile(r"\{([a-z_]\w*)\.(\w+)\}")
+
+
+@cache
+def _decoder(hint: Any) -> _Decoder:
+    """Reads values of a type; placeholders everywhere, names where no text is expected."""
+    read = hint if inspect.isfunction(hint) else _reads(hint)
+    is_text = hint is str or (get_origin(hint) is Annotated and get_args(hint)[0] is str)
+
+    def decode(reader: _Reader, value: Any) -> Any:
+        kind = type(value)
+        if kind is hint and kind is not str:
+            return value
+        if kind in _TEXTS and "{" in value:
+            found = PLACEHOLDER.fullmatch(value) if kind is str else None
+            if found is not None and (found[2] or not is_text):
+                return reader.parameter(found[1], found[2] or "", hint)
+            if (is_text or hint is Any) and (found := _WITH_COLUMN.search(value)) is not None:
+                return reader.text(value, found[1])
+        elif kind is Placeholder:
+            return reader.parameter(value.name, value.column, hint)
+        elif kind is dict and value.keys() == {"param"}:
+            return reader.parameter(value["param"], "", hint)
+        return read(reader, value)
+
+    return decode
+
+
+def _reads(hint: Any) -> _Decoder:
+    origin, inner = get_origin(hint), get_args(hint)
+    if origin is Annotated:
+        return _limited(inner[0], inner[1:])
+    if isinstance(hint, Signal):
+        return lambda reader, value: checked(hint, value)
+    if hint is Signal or origin is Signal:
+        return lambda reader, value: signal_named(value)
+    if hint is Check:
+        return lambda reader, value: notation.goal(value, reader.decode)
+    if hint is TriggerCondition:
+        return lambda reader, value: notation.condition(value, reader.decode)
+    if origin in (Union, UnionType):
+        return _either([each for each in inner if each is not NoneType], NoneType in inner)
+    if origin is Literal:
+        return _one_of(inner)
+    if origin is tuple:
+        return _listed(inner)
+    if origin is frozenset:
+        item = _decoder(inner[0])
+        return lambda reader, value: frozenset(item(reader, each) for each in _list(reader.named(value)))
+    if hint is Any:
+        return lambda reader, value: _plain(reader, value)
+    if isinstance(hint, type) and issubclass(hint, Enum):
+        return _member(hint)
+    if isinstance(hint, type) and is_dataclass(hint):
+        return _class(hint)
+    if origin is not None and issubclass(origin, Mapping):
+        item = _decoder(inner[1])
+        return lambda reader, value: {
+            name: item(reader, each) for name, each in _dict(reader.named(value), pairs=True).items()
+        }
+    return _scalar(hint)
+
+
+def _scalar(kind: type[Any]) -> _Decoder:
+    def read(reader: _Reader, value: Any) -> Any:
+        if type(value) is kind:
+            return _joined(value) if kind is str else value
+        if kind is float and type(value) is int:
+            return float(value)
+        if kind is str and isinstance(value, str):
+            return _joined(str(value))
+        if kind is str and isinstance(value, date | time):
+            return value.isoformat()
+        raise UserError(f"is {value!r}; it must be {_WORDS.get(kind, kind.__name__)}")
+
+    return read
+
+
+_WORDS = {str: "a text", float: "a number", int: "a whole number", bool: "true or false"}
+
+
+def _limited(kind: Any, limits: Sequence[Any]) -> _Decoder:
+    """Of a type with limits (``annotated_types``), or with the signals for names."""
+    read = _decoder(kind)
+    if any(getattr(each, "what", "") == "signal" for each in limits):
+        return lambda reader, value: _key(value)
+
+    def decode(reader: _Reader, value: Any) -> Any:
+        found = read(reader, value)
+        for each in limits:
+            for name, holds in _LIMITS.items():
+                bound = getattr(each, name, None)
+                if bound is not None and not isinstance(found, Param) and not holds(found, bound):
+                    raise UserError(f"is {value!r}; it must be {name} {bound:g}")
+        return found
+
+    return decode
+
+
+_LIMITS: Mapping[str, Callable[[Any, Any], bool]] = {
+    "gt": lambda value, bound: bool(value > bound),
+    "ge": lambda value, bound: bool(value >= bound),
+    "lt": lambda value, bound: bool(value < bound),
+    "le": lambda value, bound: bool(value <= bound),
+}
+
+
+def _either(kinds: Sequence[Any], may_lack: bool) -> _Decoder:
+    readers = [_decoder(kind) for kind in kinds]
+
+    def read(reader: _Reader, value: Any) -> Any:
+        if may_lack and (value is None or value == "none"):
+            return None
+        for number, each in enumerate(readers, 1):
+            try:
+                return each(reader, value)
+            except (UserError, TypeError):
+                if number == len(readers):
+                    raise
+                reader.below.clear()
+        return None
+
+    return read if len(readers) > 1 or may_lack else readers[0]
+
+
+def _one_of(values: Sequence[Any]) -> _Decoder:
+    def read(reader: _Reader, value: Any) -> Any:
+        if value not in values:
+            raise UnknownNameError("value", str(value), map(str, values))
+        return str(value) if isinstance(value, str) else value
+
+    return read
+
+
+def _member(kind: type[Enum]) -> _Decoder:
+    members = {str(member.value): member for member in kind}
+
+    def read(reader: _Reader, value: Any) -> Any:
+        if value not in members:
+            raise UnknownNameError(kind.__name__.lower(), str(value), members)
+        return members[value]
+
+    return read
+
+
+def _listed(inner: Sequence[Any]) -> _Decoder:
+    if len(inner) != 2 or inner[1] is not Ellipsis:
+        items = [_decoder(each) for each in inner]
+
+        def read(reader: _Reader, value: Any) -> Any:
+            found = _list(value)
+            if len(found) != len(items):
+                raise UserError(f"has {len(found)} entries; it must have {len(items)}")
+            return tuple(item(reader, each) for item, each in zip(items, found, strict=True))
+
+        return read
+    item = _decoder(inner[0])
+    return lambda reader, value: tuple([item(reader, each) for each in _list(reader.named(value))])
+
+
+def _list(value: Any) -> Sequence[Any]:
+    if not isinstance(value, list | tuple):
+        raise UserError(f"is {value!r}; it must be a list")
+    return value
+
+
+def _dict(value: Any, *, pairs: bool = False) -> Mapping[str, Any]:
+    """A table, or with ``pairs`` a list of names with their values, which may go on over lines."""
+    if pairs and isinstance(value, list):
+        return dict(value)
+    if not isinstance(value, Mapping):
+        raise UserError(f"is {value!r}; it must be a table")
+    return value
+
+
+def _plain(reader: _Reader, value: Any) -> Any:
+    """A value of no particular type."""
+    if isinstance(value, Quoted | Word):
+        return str(value)
+    if isinstance(value, list):
+        return [reader.decode(each, Any) for each in value]
+    if isinstance(value, dict):
+        return {name: reader.decode(each, Any) for name, each in value.items()}
+    return value
+
+
+def _class(kind: type[Any]) -> _Decoder:
+    decoders: Mapping[str, _Decoder] = {
+        name: _SPECIAL.get((kind.__name__, name)) or _decoder(hint) for name, hint in hints(kind).items()
+    }
+    needed = [each.name for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING]
+
+    def read(reader: _Reader, value: Any) -> Any:
+        value = value if kind.__name__ == "Topic" and isinstance(value, Quoted) else reader.named(value)
+        if isinstance(value, Quoted):
+            return reader.topic(value)
+        if isinstance(value, list):
+            if len(value) > len(decoders):
+                raise UserError(f"has {len(value)} entries; {kind.__name__} has {', '.join(decoders)}")
+            value = dict(zip(decoders, value, strict=False))
+        given = reader.table(value, {})
+        for name in given:
+            if name not in decoders:
+                raise UnknownNameError(f"field of {kind.__name__}", name, decoders)
+        for name in needed:
+            if name not in given:
+                raise UserError(f"lacks {name!r}: {kind.__name__} has {', '.join(decoders)}")
+        made, name = {}, ""
+        try:
+            for name, each in given.items():
+                made[name] = decoders[name](reader, each)
+        except UserError:
+            reader.below.insert(0, name)
+            raise
+        return kind(**made)
+
+    return read
+
+
+# --- fields that are more than their type says ----------------------------------------------------------------
+
+
+def _key(value: Any) -> str:
+    """A key of ``Moment.commands``: a signal's name stands for its path."""
+    if isinstance(value, str) and value[:1].isupper():
+        return signal_named(value).path
+    return str(value)
+
+
+def _keys(reader: _Reader, value: Any) -> frozenset[str]:
+    return frozenset(map(_key, _list(reader.named(value))))
+
+
+def _by_path(reader: _Reader, value: Any) -> Any:
+    """Values of signals: ``HVAC.FAN_SPEED = 100 and HVAC.AUTO = true``."""
+    return notation.values_of_signals(value if "=" in value or not value else reader.named(value), reader.decode)
+
+
+def _cabin(reader: _Reader, value: Any) -> Any:
+    known, made = hints(CabinStart), {}
+    for name, each in _dict(reader.named(value)).items():
+        if name not in known:
+            raise UnknownNameError("initial condition of the cabin", name, known)
+        made[name] = reader.decode(each, known[name])
+    return made
+
+
+def _aboard(reader: _Reader, value: Any) -> Any:
+    return reader.company() if value == COMPANY else _decoder(hints(Start)["aboard"])(reader, value)
+
+
+_SPECIAL: dict[tuple[str, str], _Decoder] = {
+    ("Start", "signals"): lambda reader, value: _mapped(reader, value, _by_path),
+    ("Start", "sensors"): lambda reader, value: _mapped(reader, value, _by_path),
+    ("Start", "cabin"): _cabin,
+    ("Start", "aboard"): _aboard,
+    ("Says", "changed"): _keys,
+}
+
+
+def _mapped(reader: _Reader, value: Any, read: _Decoder) -> Any:
+    """Signals that are drawn as a whole, or one by one."""
+    if isinstance(value, str) and (found := PLACEHOLDER.fullmatch(value)):
+        return reader.parameter(found[1], found[2] or "", read)
+    return read(reader, value)
