@@ -31,6 +31,16 @@ MOST_COPIED_BYTES = 2**32
 """Of all files of a scenario together; the network and the demand of a city take a tenth."""
 
 
+def check_target(target: Path) -> None:
+    """Refuses a folder that is not empty.
+
+    Raises:
+        UserError: it is not.
+    """
+    if target.exists() and any(target.iterdir()):
+        raise UserError(f"{target} exists; give --out another folder, or delete that one")
+
+
 @contextmanager
 def new_folder(target: Path) -> Iterator[Path]:
     """A folder for a copy, which becomes the target at the end if it is filled; nobody else makes it meanwhile.
@@ -39,8 +49,7 @@ def new_folder(target: Path) -> Iterator[Path]:
         UserError: the target is not empty, or another program is making it.
         OSError: it cannot be written.
     """
-    if target.exists() and any(target.iterdir()):
-        raise UserError(f"{target} exists; give --out another folder, or delete that one")
+    check_target(target)
     with appearing(make_folder(target.parent) / target.name) as draft:
         yield draft
 
