@@ -30,12 +30,12 @@ latency_s = { least = 0, most = 9, nominal = 0 }
 
 [failure]
 """
-OF_A_START = {"wall_seconds", "attempts", "failed_attempts"}
+OF_A_START = {"wall_seconds", "seconds", "attempts", "failed_attempts"}
 """What rows say of a start and not of what was run."""
 FULL = """
 mount -t tmpfs -o size=1g none "$ROOM" && cp -a "$GIVEN/." "$ROOM" || exit 99
 mount -o remount,ro "$ROOM"; "$@" >1.out 2>1.err; echo $? >1.code
-mount -o remount,rw,size=$(($(du -s --apparent-size -B4096 "$ROOM" | cut -f1) * 4 + 4))k "$ROOM"
+mount -o remount,rw,size=$(($(df -k --output=used "$ROOM" | tail -n 1) + 4))k "$ROOM"
 "$@" >2.out 2>2.err; echo $? >2.code
 mount -o remount,size=1g "$ROOM"; "$@" >3.out 2>3.err; echo $? >3.code
 cp -a "$ROOM/." "$KEPT"
