@@ -27,6 +27,8 @@ def mcp(**settings: Any) -> None:
     from automotive_cosim.service import EpisodeService, ServiceLimits
 
     told = filled(McpSettings, settings)
+    if told.scenarios is not None and not told.scenarios.is_dir():
+        raise UserError(f"{told.scenarios} is not a folder; give --scenarios a folder of scenarios")
     with closing(EpisodeService(limits=ServiceLimits(told.episodes, told.idle_s))) as service:
         server = make_server(service, told.interface, told.scenarios)
         if told.http is None:

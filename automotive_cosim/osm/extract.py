@@ -370,7 +370,7 @@ def _read_json(source: Path) -> _Parts:
     areas = (
         MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
     )
-    in_json = ("water in JSON, left out", "relation")
+    in_json: tuple[str, str] = ("water in JSON, left out", "relation")
     water = [(in_json, ref) for ref, tags, _ in read.relations() if land_cover.kind_of(tags) is GroundKind.WATER]
     return ways, relations, dict(sorted(nodes.items())), tagged, tuple(areas), others, water
 

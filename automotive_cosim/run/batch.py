@@ -119,10 +119,12 @@ class BatchKind(Generic[P, J, R]):
         ):
             opener = self.opener if meter is None else partial(self.opener, meter)
             limit = meter if budget.is_limited else None
+            end: Progress[R] | None = None
             for jobs in self.rounds(plan, store):
                 end = run_jobs(
                     jobs, store, opener, executor=executor, retries=retries, limit=limit, budget=budget, tell=tell
                 )
+        assert end is not None  # a plan without a job is refused
         return end
 
 

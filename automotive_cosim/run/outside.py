@@ -141,7 +141,7 @@ class OutsideAgent:
         answer = self._answer()
         is_ours = self._model is not None or is_remote(self.name)  # whose stages are no guest's
         told = answer.get("stages", []) if is_ours else []
-        self.stages = self._read(partial(self._stages, observation.time_s), told)
+        self.stages = self._read(partial(self._stages, observation), told)
         if "spent" in answer:
             raise OutOfBudgetError(self._text(answer["spent"]))
         if "refused" in answer:
@@ -188,14 +188,14 @@ class OutsideAgent:
             self._replies.append(reply)
             self._send("reply", reply)
 
-    def _stages(self, at_s: float, told: list[Json]) -> tuple[Stage, ...]:
+    def _stages(self, seen: Observation, told: list[Json]) -> tuple[Stage, ...]:
         """What it tells of its turn. What its model said and cost is known here, and told by nobody else."""
         stages = _stages(told)
         if self._model is None:
             return stages
         given = iter(self._replies)
         own = [each if each.reply is None else replace(each, reply=next(given, None)) for each in stages]
-        return (*own, *(Stage(StageName.INTERPRET, each.text, at_s, each) for each in given))
+        return (*own, *(Stage(StageName.INTERPRET, each.text, seen.time_s, each) for each in given))
 
     def _received(self) -> Json:
         if self._wire is None:

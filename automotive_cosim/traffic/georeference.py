@@ -18,6 +18,7 @@ from dataclasses import replace
 
 from pyproj import CRS, Proj, Transformer
 from pyproj.exceptions import CRSError, ProjError
+from pyproj.transformer import TransformerGroup
 
 from automotive_cosim.contracts import RoadNetwork
 
@@ -31,15 +32,23 @@ MARGIN_DEG, MARGIN_M = 0.1, 10_000.0
 TURNED = "+axis=neu"
 """PROJ's word for northings before eastings."""
 
+OTHER_AXES = re.compile(r"\+axis=(?!en)")
+"""PROJ's words for all but eastings before northings."""
+
 HELMERT = re.compile(r"step (inv )?proj=helmert (.*?)(?= step|$)")
 """The change of datum in a pipeline of PROJ's."""
+
+GEOCENTRIC = Transformer.from_pipeline(
+    "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad +step +proj=cart +ellps=WGS84"
+)
+"""From degrees and height on WGS 84 to metres from the middle of the earth."""
 
 
 def in_full(location: Mapping[str, str]) -> str:
     """The ``projParameter`` of a ``<location>`` as PROJ's string, with its change of datum; "!" if there is none.
 
     For codes that count northings first, netconvert 1.28 writes northings as x, which makes the network its own
-    mirror image: the string then says so (``TURNED``), and ``doubt`` tells.
+    mirror image: the string then says so (``TURNED``), as PROJ's does of southings, and ``doubt`` tells.
 
     Raises:
         ValueError: an attribute contains something other than numbers.
@@ -55,11 +64,13 @@ def in_full(location: Mapping[str, str]) -> str:
         return "!"
     with warnings.catch_warnings(action="ignore"):  # that names are lost
         text = crs.to_proj4().replace("+type=crs", "").strip()
+    if OTHER_AXES.search(text):
+        return text
     east_m, north_m = _middle_m(location)
     turned = crs.axis_info[0].direction == "north" and not _lies(crs, location, east_m, north_m)
     if turned:
         east_m, north_m = north_m, east_m
-    return " ".join(filter(None, (text, _datum(crs, east_m, north_m), TURNED if turned else "")))
+    return " ".join(filter(None, (text, _datum(crs, text, east_m, north_m), TURNED if turned else "")))
 
 
 def _middle_m(location: Mapping[str, str]) -> tuple[float, float]:
@@ -92,22 +103,49 @@ def _in_degrees(bounds: tuple[float, ...]) -> bool:
     return west >= -180 and east <= 180 and south >= -90 and north <= 90
 
 
-def _datum(crs: CRS, east_m: float, north_m: float) -> str:
-    """PROJ's ``+towgs84`` for the change of datum that it takes there itself; empty without one."""
+def _datum(crs: CRS, text: str, east_m: float, north_m: float) -> str:
+    """PROJ's ``+towgs84`` for the change of datum that ``sumo`` takes there itself; empty without one."""
     change = Transformer.from_crs(crs, "EPSG:4326", always_xy=True)
     try:
-        change.transform(east_m, north_m)
-        found = HELMERT.search(change.get_last_used_operation().definition)
+        lon_deg, lat_deg = change.transform(east_m, north_m, errcheck=True)
+        taken = change.get_last_used_operation()
     except ProjError:
         return ""
+    with warnings.catch_warnings(action="ignore"):  # that grids are missing
+        known = TransformerGroup(crs, "EPSG:4326", always_xy=True).transformers
+    # Of changes that are as good, PROJ takes that of the smaller area and the last by name; the PROJ 6.3 in
+    # SUMO 1.28, that of the larger and the first.
+    alike = [each for each in known if each.accuracy == taken.accuracy and _is_for(each, lon_deg, lat_deg)]
+    taken = min(alike or [taken], key=lambda each: (-_size(each), each.description))
+    found = HELMERT.search(taken.definition)
     if found is None:
         return ""
     values = dict(part.split("=", 1) for part in found[2].split() if "=" in part)
     moves = [float(values.get(key, 0)) for key in ("x", "y", "z", "rx", "ry", "rz", "s")]
     if values.get("convention") == "coordinate_frame":
         moves[3:6] = (-turn for turn in moves[3:6])
-    sign = -1 if found[1] else 1
-    return "+towgs84=" + ",".join(f"{sign * move:.12g}" for move in moves)
+    if found[1]:
+        moves = [-move for move in moves]
+
+    def towgs84() -> str:
+        return "+towgs84=" + ",".join(f"{move:.12g}" for move in moves)
+
+    # A registry's change turns by small angles, +towgs84 exactly: 2 mm apart for 5514. Moved until both meet.
+    there = GEOCENTRIC.transform(*taken.transform(east_m, north_m), 0.0)
+    here = GEOCENTRIC.transform(*Proj(f"{text} {towgs84()}")(east_m, north_m, inverse=True), 0.0)
+    moves[:3] = (move + to_m - from_m for move, to_m, from_m in zip(moves, there, here, strict=False))
+    return towgs84()
+
+
+def _is_for(change: Transformer, lon_deg: float, lat_deg: float) -> bool:
+    """Whether a change of datum is meant for a place."""
+    return change.area_of_use is not None and _within(lon_deg, lat_deg, change.area_of_use.bounds, 0.0)
+
+
+def _size(change: Transformer) -> float:
+    """Of its area, in square degrees."""
+    west, south, east, north = (0.0,) * 4 if change.area_of_use is None else change.area_of_use.bounds
+    return (east - west) * (north - south)
 
 
 class GeoReference:
@@ -156,10 +194,11 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
     """
     if network.projection is None:
         return "has no projection"
-    if TURNED in network.projection:
+    if OTHER_AXES.search(network.projection):
         return (
-            f"has its axes the other way round (it is made with {location.get('projParameter')}, which counts "
-            "northings first, and netconvert took them for x: left is right in it; build it again with --proj.utm)"
+            f"has its axes the other way round (it is made with {location.get('projParameter')}, which does not "
+            "count eastings first, and netconvert took what it counts for x: north is not up in it, or left is "
+            "right; build it again with --proj.utm)"
         )
     try:
         lon_deg, lat_deg = middle(network)

@@ -497,7 +497,7 @@ def test_what_a_model_said_and_cost_is_told_by_this_side_alone(fork_server):
             ([one], [], [one]),
         ):
             agent._replies = said
-            assert [stage.reply for stage in agent._stages(4.0, told)] == replies
+            assert [stage.reply for stage in agent._stages(SimpleNamespace(time_s=4.0), told)] == replies
 
 
 def test_an_agent_reads_the_format_of_its_model_from_the_whole_name(fork_server, observation):

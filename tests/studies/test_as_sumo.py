@@ -159,6 +159,15 @@ def test_the_size_of_what_cannot_be_kept_is_told_before_the_start(
         assert kept in said
         (changes,) = re.findall(r"of seed 0 \((.*) and (.*)\)", said)
         assert changes != ("+0.0%", "+0.0%")
+    config.write_text(text)
+    net = tmp_path / "made.net.xml"
+    slow = '<param key="maxspeed:conditional" value="18 @ (Mo-Su 00:00-24:00)"/>'
+    net.write_text(re.sub('(<edge id="[A-D].*?)</edge>', rf"\1{slow}</edge>", net.read_text(), flags=re.DOTALL))
+    tell_notes([open_scenario(config)])
+    said = capsys.readouterr().err
+    assert "but for the hours of limits and closures on 48 edges" in said
+    ((ours_kmh, sumos_kmh),) = re.findall(r"at (\S+) km/h instead of \S+ vehicles at (\S+) km/h", said)
+    assert float(ours_kmh) < 0.8 * float(sumos_kmh), "SUMO does not read them"
 
 
 @pytest.mark.slow

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats.incidents import Breakdown
+from automotive_cosim.formats.incidents import Breakdown, Roadworks
 from automotive_cosim.studies.calls.divert import divert
-from automotive_cosim.studies.calls.flow import SignalControl, take
+from automotive_cosim.studies.calls.flow import SignalControl, flow, take
 from automotive_cosim.studies.calls.ledger import Ledger, own_choice
 from automotive_cosim.traffic.running import Running
 from automotive_cosim.traffic.sumo import EGO, load_library
@@ -77,6 +77,26 @@ def test_a_queue_is_as_long_as_those_who_wait(tmp_path: Path) -> None:
         waiting = [each for each in libsumo.vehicle.getIDList() if libsumo.vehicle.getWaitingTime(each) > 0]
         assert len(waiting) > 2
         assert found == {"e2_0": 7.5 * len(waiting)}
+
+
+@pytest.mark.parametrize(("stop", "stood_s"), [('parking="true" ', 0.0), ("", 60.0)])
+def test_who_stands_at_a_stop_is_no_queue_and_loses_no_time(stop: str, stood_s: float, tmp_path: Path) -> None:
+    """SUMO's time loss and waiting time leave stops out; those who stand behind in the lane wait."""
+    bus = (
+        '<vehicle id="bus" depart="5" departSpeed="max"><route edges="e2 e3"/>'
+        f'<stop lane="e2_0" endPos="600" duration="999" {stop}/></vehicle>'
+    )
+    with running(Road(routes=CARS + bus).opened(tmp_path, warm_up_s=100.0)) as (_, world, libsumo):
+        world.stage(Roadworks(edge="e2", limit_kmh=45))
+        copy = Running(world)
+        copy.watchers.append(Ledger(load_library(), 1.0))
+        _, found = flow(copy, 60.0, 60.0)
+        assert libsumo.vehicle.isStopped("bus")
+        assert found.slowed["e2"] == (0.5, stood_s)
+        waiting = [each for each in libsumo.vehicle.getIDList() if libsumo.vehicle.getWaitingTime(each) > 0]
+        assert bool(waiting) is bool(stood_s)
+        assert found.queues[-1] == ({"e2_0": 7.5 * len(waiting)} if waiting else {})
+        assert "bus" not in waiting
 
 
 def test_who_collides_has_not_arrived(tmp_path: Path) -> None:

@@ -151,9 +151,11 @@ def test_sumos_outputs_are_read_against_the_usual_limit(tmp_path: Path) -> None:
         '</interval><interval begin="160.00" end="220.00" id="flow">'
         '<edge id="a" sampledSeconds="60.00" timeLoss="20.00" speed="5.00"/></interval></meandata>'
     )
-    flows = list(read_flows(tmp_path, 100.0, [{}, {"a": 0.5}]))
+    flows = list(read_flows(tmp_path, 100.0, [{}, {"a": (0.5, 0.0)}]))
     assert [(each.edge, each.from_s) for each in flows] == [("a", 0.0), (":n_0", 0.0), ("a", 60.0)]
     assert [each.flow.lost_s for each in flows] == [20.0, 0.0, 40.0], "at half the limit, half the time is lost too"
+    *_, stopped = read_flows(tmp_path, 100.0, [{}, {"a": (0.5, 10.0)}])
+    assert stopped.flow.lost_s == 35.0, "a stop takes no longer at half the limit"
     queues = ({}, {"a_0": 30.0, "a_1": 60.0}), ({},)
     found = cells(flows, queues, lambda edge: "junctions" if edge[0] == ":" else "primary")
     assert [each.road_class for each in found] == ["junctions", "primary"]

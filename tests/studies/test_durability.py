@@ -103,7 +103,7 @@ COMMANDS = {
         14,
     ),
     "study days": Command(
-        ("study", "days", *GRID, "--seeds", "0", "--shares", "0,1", "--days", "1", "--minutes", "5"), rows(), 12
+        ("study", "days", *GRID, "--seeds", "0", "--shares", "0,1", "--days", "2", "--minutes", "5"), rows(), 12
     ),
     "report": Command(("report", "OUT"), files("tables/*.csv"), 22, writes_into="GIVEN"),
     "publish bundle": Command(("publish", "bundle", "GIVEN", "--out", "OUT"), Path.read_bytes, 32, name="x.bundle"),

@@ -5,6 +5,7 @@ Both begin at the instant of the copy, so two copies of one instant differ by th
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 from zlib import crc32
@@ -75,9 +76,10 @@ class FlowSummary:
     """Vehicles that have arrived since the simulation began."""
     queues: tuple[dict[str, float], ...]
     """The length of the queue in each lane with one (``Ledger.queues_m``), every ``accounts.QUEUE_PERIOD_S``."""
-    slowed: dict[str, float]
-    """Edges with another limit than at the start, and their limit as a share of that: SUMO's time loss counts from
-    the limit of the moment, so it does not see what roadworks cost."""
+    slowed: dict[str, tuple[float, float]]
+    """Edges with another limit than at the start: that limit as a share of it, and how long vehicles were at their
+    stops there in the period, in s. SUMO's time loss counts from the limit of the moment, so it does not see
+    what roadworks cost."""
     consumed: dict[str, tuple[int, float, float, float, float, float]]
     """By emission class, since the simulation began: vehicles, CO2, NOx and fuel in g, electricity in Wh, noise in
     seconds of ``accounts.LOUD_DB``; empty if it is not recorded."""
@@ -176,24 +178,26 @@ def flow(running: Running, duration_s: float, every_s: float) -> tuple[FlowSumma
         duration_s: how long, a multiple of the period.
         every_s: the period, a multiple of the step.
     """
-    summaries = [_summary(running, ())]
+    summaries = [_summary(running, (), Counter())]
     for number in range(round(duration_s / every_s)):
         running.done = number * every_s, duration_s
-        queues = []
+        queues, at_stops = [], Counter[str]()
         for _ in range(round(every_s / QUEUE_PERIOD_S)):
             run_on(running, QUEUE_PERIOD_S)
             queues.append(running.watcher(Ledger).queues_m())
-        summaries.append(_summary(running, tuple(queues)))
+            if running.world.slowed():
+                at_stops.update(running.watcher(Ledger).at_stops())
+        summaries.append(_summary(running, tuple(queues), at_stops))
     return tuple(summaries)
 
 
-def _summary(running: Running, queues: tuple[dict[str, float], ...]) -> FlowSummary:
+def _summary(running: Running, queues: tuple[dict[str, float], ...], at_stops: Counter[str]) -> FlowSummary:
     ledger, world = running.watcher(Ledger), running.world
     return FlowSummary(
         ledger.summary(),
         len(ledger.arrivals_s),
         queues,
-        world.slowed(),
+        {edge: (share, at_stops[edge] * QUEUE_PERIOD_S) for edge, share in world.slowed().items()},
         ledger.consumed_by_class(),
         world.detours.cut_short,
         world.detours.kept_in,

@@ -6,7 +6,7 @@ each of them arrived, what the ego consumed on the way, and whether the traffic 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from automotive_cosim.formats.incidents import AnyIncident
 from automotive_cosim.studies.calls.accounts import (
@@ -170,6 +170,13 @@ class Ledger:
             if vehicle.getWaitingTime(each) > 0 and (lane := lane_of(each)):
                 found[lane] = found.get(lane, 0.0) + vehicle.getLength(each) + vehicle.getMinGap(each)
         return found
+
+    def at_stops(self) -> Iterator[str]:
+        """The edge of each vehicle that stands at a stop of its own in a lane."""
+        vehicle = self._sumo.vehicle
+        for each in self._sumo.vehicle_ids():
+            if vehicle.isStopped(each) and not vehicle.isStoppedParking(each):
+                yield vehicle.getRoadID(each)
 
     def others(self) -> tuple[str, ...]:
         """All other vehicles on the road, teleporting, or due and not yet in; sorted by name."""

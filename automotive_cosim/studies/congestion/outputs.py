@@ -31,14 +31,16 @@ class EdgeFlow:
     flow: FlowSums
 
 
-def read_flows(folder: Path, begin_s: float, slowed: Sequence[Mapping[str, float]] = ()) -> Iterator[EdgeFlow]:
+def read_flows(
+    folder: Path, begin_s: float, slowed: Sequence[Mapping[str, tuple[float, float]]] = ()
+) -> Iterator[EdgeFlow]:
     """The flows of a run, edge by edge and interval by interval.
 
     Args:
         folder: SUMO's outputs.
         begin_s: simulation time from which ``from_s`` counts.
-        slowed: for every interval, edges with a lower limit than usual, and its share of the usual one, against
-            which time is lost there.
+        slowed: for every interval, edges with a lower limit than usual: its share of the usual one, against which
+            time is lost there, and the time of vehicles at their stops, which is not lost.
     """
     from_s = 0.0
     for event, element in ET.iterparse(folder / EDGE_FLOWS, ("start", "end")):
@@ -49,10 +51,12 @@ def read_flows(folder: Path, begin_s: float, slowed: Sequence[Mapping[str, float
         elif element.tag == "edge" and event == "end":
             time_s = float(element.get("sampledSeconds", 0.0))
             number = round(from_s / INTERVAL_S)
-            share = slowed[number].get(element.attrib["id"], 1.0) if number < len(slowed) else 1.0
+            here = slowed[number] if number < len(slowed) else {}
+            share, stopped_s = here.get(element.attrib["id"], (1.0, 0.0))
+            lost_s = float(element.get("timeLoss", 0.0))
             flow = FlowSums(
                 time_s=time_s,
-                lost_s=time_s - share * (time_s - float(element.get("timeLoss", 0.0))),
+                lost_s=lost_s + (1 - share) * max(0.0, time_s - lost_s - stopped_s),
                 standing_s=float(element.get("waitingTime", 0.0)),
                 distance_m=time_s * float(element.get("speed", 0.0)),
             )
