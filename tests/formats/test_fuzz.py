@@ -399,9 +399,4 @@ def test_bombs_and_endless_files_cost_neither_time_nor_memory(tmp_path: Path) ->
     assert done.returncode == 0, done.stderr  # within the limits that the child has set for itself
     refusals = done.stdout.splitlines()
     assert len(refusals) == len(names), done.stdout
-<<<<<<< HEAD
-    met = [*3 * ["unpacks to over"], "a line is longer than", "not a regular file"]
-    assert all(bound in line for bound, line in zip(met, refusals, strict=True)), refusals
-=======
     assert all("unpacks to over" in line or "longer than" in line for line in refusals[:4]), done.stdout
->>>>>>> main
