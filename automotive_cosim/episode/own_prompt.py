@@ -7,6 +7,7 @@ a row. Whoever starts the agent reads it again, and it must not have changed sin
 from __future__ import annotations
 
 import hashlib
+import os
 from pathlib import Path
 
 from automotive_cosim.contracts.given import PromptLength
@@ -47,8 +48,8 @@ def instructions(prompt: PromptLength) -> str:
 def _read(path: str) -> str:
     """Text of the file, without line ends that depend on the machine."""
     file = Path(path)
-    if not file.is_file():
-        raise UserError(f"--prompt {path}: there is no such file; give standard, short, long or a .md or .txt file")
+    if not os.path.isfile(path):  # noqa: PTH113, false if the name is too long
+        raise UserError(f"--prompt {path:.200}: there is no such file; give standard, short or a .md or .txt file")
     try:
         with file.open(encoding="utf-8") as opened:
             text = opened.read(MOST_CHARACTERS + 1)

@@ -65,13 +65,16 @@ class Catalogs:
     def _entry(self, reference: XmlElement) -> tuple[XmlElement, dict[str, str]]:
         """What a reference names, and the values that it assigns."""
         name, wanted = reference.text("catalogName"), reference.text("entryName")
+        found: list[tuple[bool, XmlElement]] = []
         for folder in self._folders:
             for path in sorted(folder.glob("*.xosc")):
                 root = self._read.get(path) or self._read.setdefault(path, read_tree(path))
                 for catalog in root.all("Catalog"):
                     entries = [each for each in catalog.parts if each.attributes.get("name") == wanted]
-                    if catalog.attributes.get("name") == name and entries:
-                        return _copied(entries[0]), dict(_assigned(reference))
+                    if entries and name in (catalog.attributes.get("name"), path.stem):
+                        found.append((catalog.attributes.get("name") != name, entries[0]))
+        if found:
+            return _copied(min(found, key=lambda each: each[0])[1]), dict(_assigned(reference))
         looked = ", ".join(map(str, self._folders)) or "none"
         raise reference.refused(
             f"names {wanted!r} of the catalog {name!r}, which is in none of the folders: {looked}"

@@ -33,10 +33,14 @@ from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.script import EGO as THE_EGO
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
+_UNWRITTEN = "element", "when", "lane_id", "meets", "of_meets"
+"""What of an action stands in other fields of the scenario."""
 EGO = "ego"
 TRIP = "imported"
 REACTION_S, BRAKES_MPS2 = 1.0, 4.5
 """What SUMO's passenger car keeps and brakes with: its defaults."""
+NO_TYPE = re.compile(rb'(<signal\b[^>]*\stype=)(""|\'\')')
+"""A sign that says nothing of its kind: netconvert reads it only with a word that stands for none."""
 HEIGHTS = re.compile(rb"\+(geoidgrids|geoid_crs|vunits)=[^\s<\]]*")
 """What a projection says of heights, which roads here have not; its grids are on few machines."""
 NET, ROUTES = "road.net.xml", "none.rou.xml"
@@ -128,7 +132,7 @@ def _for_netconvert(source: Path, ours: Path) -> bool:
     for road in roads:
         if road.keeps_left != keeps_left:
             raise road.element.refused("keeps to another side than others of the file, which is not imported")
-    text = HEIGHTS.sub(b"", ours.read_bytes())
+    text = NO_TYPE.sub(rb'\1"-1"', HEIGHTS.sub(b"", ours.read_bytes()))
     if keeps_left:
         root = ET.fromstring(text)
         mirror(root)
@@ -153,7 +157,7 @@ def scenario_text(
         raise mine.actions[0]["element"].refused(f"acts on {story.ego}, which SUMO's driver drives; remove it")
     lane, at_m = _start(mine, story, places)
     goals = [places.spot(goal, story.entities) for goal in mine.goals]
-    way = places.way(mine, lane.getEdge(), goals)
+    way = places.way(mine.name, lane.getEdge(), goals)
     via = [places.lane_at(goal, is_goal=True)[0].getEdge().getID() for goal in goals[:-1]]
     ends = {way[0].getID(), way[-1].getID()}
     blocks: list[tuple[str, Mapping[str, Any]]] = [
@@ -246,7 +250,7 @@ def _scripted(
     entity: ScriptEntity, story: ReadStory, places: RoadPlaces, signals: list[dict[str, Any]]
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
     lane, at_m = _start(entity, story, places)
-    way = places.way(entity, lane.getEdge(), [places.spot(goal, story.entities) for goal in entity.goals])
+    way = places.way(entity.name, lane.getEdge(), [places.spot(goal, story.entities) for goal in entity.goals])
     yield (
         "[[incidents]]",
         {
@@ -262,7 +266,11 @@ def _scripted(
         },
     )
     for action in sorted((*signals, *entity.actions), key=lambda each: each["at_s"]):
-        told = {key: value for key, value in action.items() if key not in ("element", "when", "lane_id")}
+        told = {key: value for key, value in action.items() if key not in _UNWRITTEN}
+        for key, whose in (("meets", entity), ("of_meets", story.entities.get(action.get("of", "")))):
+            if key in action and whose is not None:
+                there, there_m = places.lane_at(places.spot(action[key], story.entities), whose.front_m)
+                told |= {f"{key}_edge": there.getEdge().getID(), f"{key}_m": round(there_m, 2)}
         if "of" in told:
             told["of"] = _called(told["of"], story)
         if "lane_id" in action:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from shapely import LineString, Point, STRtree
 
 from automotive_cosim.exchange.roads import OpenDriveRoad, read_roads
-from automotive_cosim.exchange.storyboard import ScriptEntity
+from automotive_cosim.exchange.storyboard import ScriptEntity, route_goals
 from automotive_cosim.exchange.tree import XmlElement
 
 NEAR_M = 10.0
@@ -111,6 +112,26 @@ class RoadPlaces:
         y_m = other.y_m + dx_m * math.sin(turned) + dy_m * math.cos(turned)
         return RoadSpot(place, x_m, y_m, _oriented(place, heading, self.heading(other)))
 
+    def _on_route(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
+        """``RoutePosition``."""
+        wanted = place.part("InRoutePosition").part("FromLaneCoordinates")
+        goals = [self.spot(each, entities) for each in route_goals(place.part("RouteRef").one("Route"))]
+        lane, at_m = self.lane_at(goals[0], is_goal=True)
+        left_m, lane_id = at_m + wanted.number("pathS"), f"_{_lane_id(wanted, wanted.text('laneId'))}"
+        way = self.way("the route", lane.getEdge(), goals[1:]) if goals[1:] else [lane.getEdge()]
+        ends = [(each.getShape()[0], each.getShape()[-1]) for each in way]
+        for edge, gap_m in zip(way, [*(math.dist(a[1], b[0]) for a, b in pairwise(ends)), 0.0], strict=True):
+            if left_m <= edge.getLength() + gap_m:
+                for each, line in zip(self._lanes, self._lines, strict=True):
+                    names = each.getParam("origId", "").split()
+                    if each.getEdge() is edge and any(name.endswith(lane_id) for name in names):
+                        here = line.interpolate(min(1.0, left_m / edge.getLength()), normalized=True)
+                        spot = RoadSpot(place, here.x, here.y, None)
+                        return replace(spot, heading_rad=_oriented(place, None, self.heading(spot)))
+                raise place.refused(f"is on lane {lane_id[1:]}, which the route does not have there")
+            left_m -= edge.getLength() + gap_m
+        raise place.refused(f"is {left_m:.0f} m beyond the end of its route")
+
     def _other(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         name = place.text("entityRef")
         found = entities.get(name)
@@ -129,6 +150,8 @@ class RoadPlaces:
 
     def _laid(self, place: XmlElement, road: OpenDriveRoad, s_m: float, lane: int, offset_m: float) -> RoadSpot:
         _check_s(place, road, s_m)
+        if not lane:  # the line between both directions
+            return _beside(place, road, s_m, road.middle_at(s_m) + offset_m)
         lanes = road.lanes_at(s_m)
         if lane not in lanes:
             raise place.refused(f"is on lane {lane} of road {road.name}, which has none at s = {s_m:g}")
@@ -228,7 +251,7 @@ class RoadPlaces:
 
     # --- ways ---------------------------------------------------------------------------------------------------
 
-    def way(self, entity: ScriptEntity, first: Any, goals: Sequence[RoadSpot]) -> list[Any]:
+    def way(self, name: str, first: Any, goals: Sequence[RoadSpot]) -> list[Any]:
         """The edges from the first over the goals; without any, straight on.
 
         Raises:
@@ -239,7 +262,7 @@ class RoadPlaces:
             target = self.lane_at(goal, is_goal=True)[0].getEdge()
             found, _ = self.net.getShortestPath(edges[-1], target, vClass="passenger")
             if found is None:
-                raise goal.element.refused(f"cannot be reached by {entity.name} from edge {edges[-1].getID()}")
+                raise goal.element.refused(f"cannot be reached by {name} from edge {edges[-1].getID()}")
             edges += found[1:]
         return edges if goals else edges + list(self._onward(first))
 
@@ -277,6 +300,7 @@ _SPOTS = {
     "RelativeRoadPosition": RoadPlaces._beside_other,
     "RelativeWorldPosition": RoadPlaces._from_other,
     "RoadPosition": RoadPlaces._on_road,
+    "RoutePosition": RoadPlaces._on_route,
     "WorldPosition": RoadPlaces._world,
 }
 

@@ -85,14 +85,18 @@ class OpenDriveRoad:
             heading,
         )
 
+    def middle_at(self, s_m: float) -> float:
+        """t of lane 0."""
+        offset = _at(self._offsets, "s", s_m)
+        return _cubic(offset[0], offset[1])[0] if offset else 0.0
+
     def lanes_at(self, s_m: float) -> Mapping[int, tuple[float, float]]:
         """The lanes at a place: t of each one's middle, and its width.
 
         Raises:
             ScenarioError: a lane is given by its border.
         """
-        offset = _at(self._offsets, "s", s_m)
-        middle_m = _cubic(offset[0], offset[1])[0] if offset else 0.0
+        middle_m = self.middle_at(s_m)
         found: dict[int, tuple[float, float]] = {}
         section = _at(self._sections, "s", s_m)
         if section is None:

@@ -67,6 +67,8 @@ class ReadStory:
     """What each event is called."""
     parts: dict[tuple[str, str], list[tuple[str, str]]] = field(default_factory=dict)
     """Events and their acts by the type and name of the element of the storyboard that they are in."""
+    again: set[str] = field(default_factory=set)
+    """The events that are carried out more than once."""
     signals: list[dict[str, Any]] = field(default_factory=list)
     """Actions without an effect: they begin when an act begins or stops."""
 
@@ -141,6 +143,11 @@ def _starts_at(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> No
 
 def _starts_with(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
     made = _speed(action, story)
+    if "bumper" in made:
+        if entity.name != story.ego:
+            entity.actions.append(made | {"name": "", "at_s": 0.0, "when": [], "element": action})
+            return
+        raise action.refused(f"acts on {story.ego}, which SUMO's driver drives; remove it")
     target = action.one("SpeedAction").part("SpeedActionTarget").parts[0]
     over = {key: made[key] for key in ("over_s", "over_m", "rate") if key in made}
     if "of" not in made:
@@ -161,37 +168,43 @@ def _takes(routing: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
     if action.tag == "AcquirePositionAction":
         entity.goals = [action.part("Position")]
         return
-    route = action.one("Route")
+    entity.goals = route_goals(action.one("Route"))
+
+
+def route_goals(route: XmlElement) -> list[XmlElement]:
+    """The positions of a route.
+
+    Raises:
+        ScenarioError: it goes round, or has none.
+    """
     if route.is_true("closed"):
         raise route.refused("has closed = true, which is not imported; end it at its last waypoint")
-    entity.goals = [waypoint.part("Position") for waypoint in route.all("Waypoint")]
+    goals = [waypoint.part("Position") for waypoint in route.all("Waypoint")]
+    if not goals:
+        raise route.refused("has no Waypoint")
+    return goals
 
 
 def _driven_by(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
-    """SUMO's driver drives, so that nobody else may."""
-    for part in action.parts if action.tag == "ControllerAction" else (action,):
-        action.taken.add(part.tag)
-        prefix = "activateL" if part.tag == "AssignControllerAction" else "l"
-        names = [f"{prefix}ateral", f"{prefix}ongitudinal"]
-        if part.tag == "OverrideControllerValueAction":
-            for value in part.only("Brake", "Clutch", "Gear", "ParkingBrake", "SteeringWheel", "Throttle"):
-                if value.is_true("active"):
-                    raise value.refused("has active = true, which is not imported; SUMO's drivers drive")
-        else:
-            active = [part.is_true(name, otherwise="false") for name in names]
-            if not any(active) or entity.name == story.ego:
-                continue
-            raise part.refused(f"hands {entity.name} to a controller, which is not imported; SUMO's drivers drive")
+    """SUMO's driver drives, whichever controller does elsewhere; pedals and wheel are nobody else's."""
+    for part in action.all("OverrideControllerValueAction"):
+        for value in part.only("Brake", "Clutch", "Gear", "ParkingBrake", "SteeringWheel", "Throttle"):
+            if value.is_true("active"):
+                raise value.refused("has active = true, which is not imported; SUMO's drivers drive")
 
 
 def _is_seen(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
-    seen = [action.is_true(name) for name in ("graphics", "sensors", "traffic")]
-    if not all(seen):
-        raise action.refused("hides a vehicle, which is not imported; remove it")
+    if not action.is_true("traffic"):
+        raise action.refused("hides a vehicle from traffic, which is not imported; remove it")
+
+
+def _looks(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
+    """Lamps and gestures are not shown."""
 
 
 _AT_THE_START = {
     "ActivateControllerAction": _driven_by,
+    "AppearanceAction": _looks,
     "ControllerAction": _driven_by,
     "LongitudinalAction": _starts_with,
     "RoutingAction": _takes,
@@ -200,7 +213,7 @@ _AT_THE_START = {
 }
 
 
-_WITHOUT_EFFECT = "ActivateControllerAction", "ControllerAction", "VisibilityAction"
+_WITHOUT_EFFECT = "ActivateControllerAction", "AppearanceAction", "ControllerAction", "VisibilityAction"
 """Actions that change nothing here, or are refused."""
 
 
@@ -271,6 +284,8 @@ def _number(board: XmlElement, story: ReadStory) -> None:
         if name in story.names.values():
             raise event.refused(f"has name = {name!r} as another event here has; give it one of its own")
         story.names[id(event)] = name
+        if event.number("maximumExecutionCount", 1.0) > 1:
+            story.again.add(name)
         act = f"act {next(each for each in around if each.tag == 'Act').text('name')}"
         for each in (*around, *event.all("Action")):
             key = each.tag[0].lower() + each.tag[1:], each.text("name")
@@ -330,6 +345,9 @@ def _by_value(by: XmlElement, shared: Waited, story: ReadStory) -> Iterator[list
         state = what.word("state", *BEGUN, *ENDED)
         if not events:
             raise what.refused(f"names no {kind} {name!r}")
+        is_each = state == "endTransition" or (state in BEGUN and kind in ("event", "action"))
+        if is_each and any(event in story.again for event, _ in events):
+            raise what.refused("waits for an event that is carried out more than once, which is not imported")
         if shared["edge"] == "falling":
             return
         shared = {**shared, "edge": ""}  # what has begun or ended stays so
@@ -414,7 +432,8 @@ def _act(act: XmlElement, story: ReadStory, until: WaitedGroups) -> None:
         also.append({"what": "begun", "of": f"end of {name}", "below": True})
         ends_s = float("inf")
     for group in act.all("ManeuverGroup"):
-        _once(group)
+        if _times(group) > 1:
+            raise group.refused("is carried out more than once, which is not imported; write it as often")
         actors = group.part("Actors")
         if actors.is_true("selectTriggeringEntities", otherwise="false"):
             raise actors.refused("has selectTriggeringEntities = true, which is not imported; name them")
@@ -439,10 +458,14 @@ def _event(
     actors: Sequence[ScriptEntity],
     story: ReadStory,
 ) -> None:
-    _once(event)
+    times = _times(event)
     begins_s, ends_s = lasts
     trigger = _begins(event, story)
     at_s = None if trigger is None else _at_s(trigger)
+    if at_s is not None and times > 1:
+        if any(not each["edge"] for group in trigger or () for each in group or ({"edge": ""},)):
+            raise event.refused("is carried out again at once, which is not imported; give it a condition")
+        times = 1  # a time comes once
     is_over = trigger is None or max(begins_s, at_s or 0.0) >= ends_s
     when: WaitedGroups = []
     if at_s is None and ends_s < float("inf"):
@@ -455,7 +478,8 @@ def _event(
         "when": [group for group in when if group],
         "alone": event.word("priority", "overwrite", "override", "parallel") != "parallel",
     }
-    signal = {"name": shared["name"], "at_s": shared["at_s"], "when": shared["when"]}
+    again = {"times": times} if times > 1 else {}
+    signal = {"name": shared["name"], "at_s": shared["at_s"], "when": shared["when"]} | again
     for action in event.all("Action"):
         what = action.one("GlobalAction", "PrivateAction")
         if what.tag == "GlobalAction":
@@ -466,23 +490,25 @@ def _event(
             _environment(what.one("EnvironmentAction"), shared["at_s"], story)
             story.signals.append(signal)
             continue
-        done = what.one("LongitudinalAction", "LateralAction", *_WITHOUT_EFFECT)
+        done = what.one(*_CHANGES, *_WITHOUT_EFFECT)
         if done.tag in _WITHOUT_EFFECT:
             for actor in actors:
                 _AT_THE_START[done.tag](done, actor, story)
             if not is_over:
                 story.signals.append(signal)
             continue
-        change = _speed if done.tag == "LongitudinalAction" else _lane
+        change = _CHANGES[done.tag]
         for actor in actors:
-            made = shared | change(done, story) | {"element": done}
+            made = shared | change(done, story) | {"element": done} | again
             if not is_over:
                 actor.actions.append(made)
 
 
-def _once(element: XmlElement) -> None:
-    if element.number("maximumExecutionCount", 1.0) != 1:
-        raise element.refused("is carried out more than once, which is not imported; write it as often")
+def _times(element: XmlElement) -> int:
+    times = element.number("maximumExecutionCount", 1.0)
+    if times < 1 or times != round(times):
+        raise element.refused(f"has maximumExecutionCount = {times:g}; a whole number from 1 on is needed")
+    return round(times)
 
 
 def _dynamics(dynamics: XmlElement) -> dict[str, Any]:
@@ -497,16 +523,37 @@ def _dynamics(dynamics: XmlElement) -> dict[str, Any]:
 
 
 def _speed(action: XmlElement, story: ReadStory) -> dict[str, Any]:
-    speed = action.one("SpeedAction")
+    speed = action.one("SpeedAction", "LongitudinalDistanceAction")
+    if speed.tag == "LongitudinalDistanceAction":
+        return _gap(speed, story)
     made = _dynamics(speed.part("SpeedActionDynamics"))
     target = speed.part("SpeedActionTarget").one("AbsoluteTargetSpeed", "RelativeTargetSpeed")
     value = target.number("value")
     if target.tag == "AbsoluteTargetSpeed":
+        if value < 0:
+            raise target.refused(f"has value = {value:g}; vehicles do not reverse here")
         return made | {"speed_kmh": round(value * KMH_PER_MPS, 3)}
     made |= {"of": _named(story, target).name, "keeps": target.is_true("continuous")}
     if target.word("speedTargetValueType", "delta", "factor") == "factor":
         return made | {"speed_share": value}
     return made | {"speed_share": 1.0, "faster_kmh": round(value * KMH_PER_MPS, 3)}
+
+
+def _gap(action: XmlElement, story: ReadStory) -> dict[str, Any]:
+    sides = "any", "trailingReferencedEntity"
+    made = {
+        "of": _named(story, action).name,
+        "keeps": action.is_true("continuous"),
+        "bumper": action.is_true("freespace"),
+        "trails": action.word("displacement", *sides, otherwise="any") != "any",
+    }
+    given = [name for name in ("distance", "timeGap") if name in action.attributes]
+    if len(given) != 1:
+        raise action.refused("needs either distance or timeGap")
+    value = action.number(given[0])
+    if value < 0:
+        raise action.refused(f"has {given[0]} = {value:g}, which must not be negative")
+    return made | {"gap_m" if given[0] == "distance" else "gap_s": value}
 
 
 def _lane(action: XmlElement, story: ReadStory) -> dict[str, Any]:
@@ -522,3 +569,27 @@ def _lane(action: XmlElement, story: ReadStory) -> dict[str, Any]:
     if target.tag == "AbsoluteTargetLane":
         return made | {"lane_id": round(value)}
     return made | {"lanes": round(value), "of": _named(story, target).name}
+
+
+def _meeting(action: XmlElement, story: ReadStory) -> dict[str, Any]:
+    """Two vehicles come to their places at once."""
+    name = action.text("masterEntityRef")
+    if name not in story.entities:
+        raise action.refused(f"names no entity {name!r}")
+    made = {"of": name, "meets": action.part("TargetPosition"), "of_meets": action.part("TargetPositionMaster")}
+    final = action.find("FinalSpeed")
+    if final is None:
+        return made
+    speed = final.one("AbsoluteSpeed", "RelativeSpeedToMaster")
+    value = speed.number("value")
+    if speed.tag == "AbsoluteSpeed":
+        if value < 0:
+            raise speed.refused(f"has value = {value:g}; vehicles do not reverse here")
+        return made | {"speed_kmh": round(value * KMH_PER_MPS, 3)}
+    if speed.word("speedTargetValueType", "delta", "factor") == "factor":
+        return made | {"speed_share": value}
+    return made | {"speed_share": 1.0, "faster_kmh": round(value * KMH_PER_MPS, 3)}
+
+
+_CHANGES = {"LongitudinalAction": _speed, "LateralAction": _lane, "SynchronizeAction": _meeting}
+"""What changes how a vehicle drives."""

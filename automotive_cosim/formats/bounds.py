@@ -41,6 +41,10 @@ CELL_BYTES = 2**29
 """Of all texts of a table together: one text of a workbook may stand in every cell."""
 BOOK_TIMES = 100
 """What a workbook says that it unpacks to, compared with its size, beyond ``FREELY_UNPACKED_BYTES``."""
+TASK_TEXT = 10_000
+"""Characters of one text of a task; a long one has a thousand."""
+TASK_COST = 5_000_000
+"""Values and characters that are made of a file of tasks: a name, column or default counts wherever it is used."""
 PIXELS = 2**24
 """Of a picture: 16 megapixels; a screen has one."""
 
@@ -93,6 +97,11 @@ _TREE = f"{_PACKED}; {KEPT_ELEMENTS:,} elements, {_mb(TAG_BYTES)} a tag, no docu
 
 READERS = (
     BoundedReader("TOML (scenario, plan, rules, space) and scripts of actions", "formats.files", _mb(TEXT_BYTES)),
+    BoundedReader(
+        "tasks in TOML",
+        "tasking.reading",
+        f"{_mb(TEXT_BYTES)}, {TASK_TEXT:,} characters a text; {TASK_COST:,} values and characters made of it",
+    ),
     BoundedReader("a prompt of your own", "episode.own_prompt", "16,000 characters"),
     BoundedReader("JSON (results, setups, calibrations)", "formats.files", f"{_PACKED}; {VALUES:,} values"),
     BoundedReader(

@@ -246,7 +246,7 @@ class VehicleAction:
     faster_kmh: float = 0.0
     """How much faster than that share."""
     keeps: bool = False
-    """Whether it goes on keeping to the speed of ``of``."""
+    """Whether it goes on keeping to the speed of ``of``, or the distance to it."""
     lane: Annotated[int, Ge(0)] | None = None
     """The lane into which it moves, among the edge's lanes for cars, 0 nearest the kerb."""
     over_s: Annotated[float, Ge(0)] = 0.0
@@ -257,6 +257,25 @@ class VehicleAction:
     """Change of speed in m/s2, instead."""
     alone: bool = False
     """Whether it ends what the vehicle is still at."""
+    times: Annotated[int, Ge(1)] = 1
+    """How often it is carried out: again once it is over and what must hold holds again."""
+    meets_edge: str = ""
+    """It adapts its speed so as to be at ``meets_m`` of this edge when ``of`` is at ``of_meets_m`` of
+    ``of_meets_edge``; there it has the speed that is asked for."""
+    meets_m: Annotated[float, Ge(0)] = 0.0
+    """Of its front bumper, from the start of the edge."""
+    of_meets_edge: str = ""
+    """The edge on the way of ``of``."""
+    of_meets_m: Annotated[float, Ge(0)] = 0.0
+    """Of the front bumper of ``of``."""
+    gap_m: Annotated[float, Ge(0)] | None = None
+    """The distance to ``of`` that it comes to, and goes on keeping if it ``keeps``."""
+    gap_s: Annotated[float, Ge(0)] | None = None
+    """How long it takes to drive that distance, instead."""
+    bumper: bool = False
+    """Whether the distance is that between the vehicles, rather than between their fronts."""
+    trails: bool = False
+    """Whether it is to be behind ``of``, rather than where it is, ahead or behind."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -19,6 +19,8 @@ T = TypeVar("T")
 _DEEP = re.compile(r"""(?<![\w.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){100}""")
 """A key of more parts than anybody writes: ``tomllib`` takes the square of their number in memory."""
 
+LONGEST = 600
+"""Characters of a reason that are told; it may quote what came."""
 LABELS = {"id": " {}", "kind": " of kind '{}'", "name": " '{}'"}
 """Keys that identify an entry of a list of tables, and how an error names it."""
 
@@ -44,6 +46,7 @@ class Document:
     def refused(self, steps: Steps, why: str) -> UserError:
         """The error to raise about a value."""
         where, name = self.place(steps)
+        why = why if len(why) <= LONGEST else f"{why[:LONGEST]}…"
         return self.error(f"{where}: {name} {why}" if name else f"{where}: {why}")
 
     def place(self, steps: Steps) -> tuple[str, str]:
@@ -58,7 +61,7 @@ class Document:
         """A table's name as written in the file, with what identifies it among others of that name."""
         if not table:
             return ""
-        name = ".".join(str(step) for step in table if isinstance(step, str))
+        name = ".".join(_shown(step) for step in table if isinstance(step, str))
         if isinstance(table[-1], str):
             return f" [{name}]"
         entry: Any = self.table
@@ -103,7 +106,13 @@ _OPAQUE = re.compile(
 
 def dotted(steps: Steps) -> str:
     """``cases[1].when.lit``."""
-    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).removeprefix(".")
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{_shown(step)}" for step in steps).removeprefix(".")
+
+
+def _shown(step: object) -> str:
+    """A key as it is told: short, and without controls of a terminal."""
+    told = str(step)
+    return told if told.isprintable() and len(told) <= 80 else repr(told[:80])
 
 
 def _is_word(value: object) -> bool:

@@ -277,6 +277,8 @@ def _factor(document: Document, name: str, given: Any) -> Factor:
             values = [str(value) if isinstance(value, str) else value for value in values]
     except UserError as error:
         raise document.refused(steps, f"has a value that does not exist: {error}") from error
+    if name == "seed" and not all(type(value) is int and value >= 0 for value in values):
+        raise document.refused(steps, "has a value that is no seed; give whole numbers from 0")
     if not values or not all(map(_is_level, values)):
         raise document.refused(steps, "is neither a list of values nor { least, most }; give one of the two")
     return FactorChoices(name, tuple(dict.fromkeys(values)))
@@ -292,10 +294,12 @@ def _range(document: Document, steps: tuple[str, str], name: str, given: dict[st
     nominal = float(default if made.nominal is None else made.nominal)
     if not made.least < made.most or (made.logarithmic and made.least <= 0):
         raise document.refused(steps, "is empty; give a least below the most, above 0 if it is logarithmic")
-    if not made.least <= nominal <= made.most:
-        raise document.refused(steps, f"has its nominal value {nominal:g} outside; give one from least to most")
+    if name == "seed" and made.least < 0:
+        raise document.refused(steps, "has a least that is no seed; give whole numbers from 0")
     whole = made.whole or name == "seed"
     nominal = round(nominal) if whole else nominal
+    if not made.least <= nominal <= made.most:
+        raise document.refused(steps, f"has its nominal value {nominal:g} outside; give one from least to most")
     return FactorRange(name, float(made.least), float(made.most), nominal, whole, made.logarithmic)
 
 

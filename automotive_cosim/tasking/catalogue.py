@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.xml import without_collection
-from automotive_cosim.tasking.instance import instances
+from automotive_cosim.tasking.instance import drawn, instances
 from automotive_cosim.tasking.own_files import VARIABLE, line_of, own_files, shipped_files, shipped_tasks, tasks_of
-from automotive_cosim.tasking.parameters import FromCockpit, names
+from automotive_cosim.tasking.parameters import FromCockpit, named_in, names
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Differs, Task
+
+_ID = re.compile(r"\w[\w-]{0,99}", re.ASCII)
+MOST_DRAWN = 1_000_000
+"""Sets of parameters of a task, of which an instance takes one by a permutation of all."""
 
 
 class Catalogue(Mapping[str, Task]):
@@ -87,9 +93,23 @@ def _enter(known: dict[str, Task], tasks: Iterable[Task]) -> None:
     for task in tasks:
         if task.id in known:
             raise ValueError(f"task {task.id!r} occurs twice in the catalogue")
+        if not _ID.fullmatch(task.id):
+            raise ValueError(f"a task is named {task.id[:100]!r}; expected up to 100 letters, digits, _ and -")
+        _check_choices(task)
         if len(set(task.templates)) < 4:
             raise ValueError(f"task {task.id!r} has {len(set(task.templates))} phrasings; it requires four")
-        lacking = sorted(names((task.templates, task.first, task.second)) - task.parameters.keys())
+        said = chain(task.templates, *(speech.templates for speech in task.spoken.values()))
+        try:
+            asked = names((task.first, task.second)).union(*map(named_in, said))
+            lacking = sorted(asked - task.parameters.keys())
+        except ValueError as error:
+            raise ValueError(f"task {task.id!r} {error}") from error
+        for speech in task.spoken.values():
+            if len(speech.templates) != len(task.templates):
+                raise ValueError(
+                    f"task {task.id!r} has {len(task.templates)} phrasings and {len(speech.templates)} in "
+                    f"{speech.language.words}; expected as many"
+                )
         if lacking:
             raise ValueError(f"task {task.id!r} uses parameters that it does not declare: {', '.join(lacking)}")
         if task.dimension.is_safety and task.second is None:
@@ -108,6 +128,16 @@ def _enter_own(known: dict[str, Task], folder: Path) -> None:
                 _enter(known, (task,))
             except ValueError as error:
                 raise UserError(f"{path}, line {line_of(path, task.id)}: {error}") from error
+
+
+def _check_choices(task: Task) -> None:
+    for name, choices in task.parameters.items():
+        if isinstance(choices, FromCockpit):
+            continue
+        if not choices or any(type(choice) not in (str, int, float) for choice in choices):
+            raise ValueError(f"task {task.id!r} draws {name!r} from {choices!r:.60}; expected texts or numbers")
+    if (number := drawn(task)) > MOST_DRAWN:
+        raise ValueError(f"task {task.id!r} has {number:.0e} sets of parameters; at most {MOST_DRAWN:,}")
 
 
 def _check_difference(task: Task) -> None:

@@ -78,7 +78,7 @@ def draw(
         UnknownNameError: the task has no such half, or the cockpit has nothing of that kind.
         UserError: the driver has no words for it in that language.
     """
-    phrasings, ways = len(task.templates), _ways(task)
+    phrasings, ways = len(task.templates), drawn(task)
     order = Draws(task.id, 0)
     phrasing = int(order.rng(Purpose.PHRASING).permutation(phrasings)[(number + redrawn) % phrasings])
     # Once both orders have come round together, the parameters go on by one.
@@ -177,11 +177,11 @@ HELD = {
 
 def instances(task: Task) -> int:
     """Number of distinct phrasings, parameters and scenarios; other variation by seed is not counted."""
-    return len(task.templates) * _ways(task) * len(task.runs_in)
+    return len(task.templates) * drawn(task) * len(task.runs_in)
 
 
-def _ways(task: Task) -> int:
-    """Number of distinct sets of parameters."""
+def drawn(task: Task) -> int:
+    """Number of distinct sets of parameters that can be drawn."""
     return math.prod(map(_count, task.parameters.values()))
 
 

@@ -53,6 +53,8 @@ from automotive_cosim.tasking.triggers import All, Not, SignalAbove, SignalBelow
 
 LONGEST_WAIT_S = 10
 """The longest wait of one action; longer ones are several."""
+MOST_MOVES = 1000
+"""Of one way, waits counted as the actions that they are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,7 +223,9 @@ KINDS = {
 
 def _lexed(written: str) -> list[tuple[str, str]]:
     """Kind and text of every token, and the end."""
-    text = _LINE_END.sub(" ", written).rstrip() if "\n" in written else written.rstrip()
+    if not isinstance(written, str):
+        raise UserError(f"is {written!r}; it must be a text")
+    text = " ".join(filter(None, map(str.strip, written.split("\n"))))
     tokens, at, end, match = list[tuple[str, str]](), 0, len(text), _TOKEN.match
     while at < end:
         found = match(text, at)
@@ -233,9 +237,6 @@ def _lexed(written: str) -> list[tuple[str, str]]:
         at = found.end()
     tokens.append(("end", ""))
     return tokens
-
-
-_LINE_END = re.compile(r"\s*\n\s*")
 
 
 def _placeholder(text: str) -> Placeholder:
@@ -264,13 +265,15 @@ def moves(text: str, decode: Decode, solution: Sequence[Move] = ()) -> tuple[Mov
             found += read(reader)
         elif verb in ("first", "last"):
             count = int(reader.next("number"))
-            if count > len(solution):
+            if not 0 <= count <= len(solution):
                 raise UserError(f"{verb} {count}: the solution has {len(solution)} moves")
             found += solution[:count] if verb == "first" else solution[len(solution) - count :]
         elif verb in _ACTIONS:
             found.append(_action(reader, verb))
         else:
             raise UnknownNameError("move", verb, (*_VERBS, *_ACTIONS, "first", "last"))
+        if len(found) > MOST_MOVES:
+            raise UserError(f"has more than {MOST_MOVES:,} moves")
         if not reader.done:
             reader.needs(";", "sign")
     return tuple(found)
@@ -330,6 +333,8 @@ def _said(kind: type[Any]) -> Callable[[_Reader], tuple[Move, ...]]:
 
 def _wait(reader: _Reader) -> tuple[Move, ...]:
     seconds = int(reader.next("number"))
+    if not 0 < seconds <= MOST_MOVES * LONGEST_WAIT_S:
+        raise UserError(f"wait {seconds}: from 1 to {MOST_MOVES * LONGEST_WAIT_S:,} s")
     return tuple(
         Do(Action(ActionType.WAIT, seconds=min(LONGEST_WAIT_S, seconds - past)))
         for past in range(0, seconds, LONGEST_WAIT_S)

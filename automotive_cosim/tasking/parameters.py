@@ -7,9 +7,11 @@ A task is written once with ``param("degrees")`` wherever the drawn value belong
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
+from string import Formatter
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -99,26 +101,43 @@ def _field_names(of: type) -> tuple[str, ...] | None:
     return tuple(field.name for field in fields(of) if field.init) if is_dataclass(of) else None
 
 
-class _Asked(dict[str, Any]):
-    """The parameters that texts ask for."""
+def named_in(text: str) -> Iterator[str]:
+    """The names in braces in a text.
 
-    def __missing__(self, name: str) -> Param:
-        self[name] = Param(name)
-        return Param(name)
+    Raises:
+        ValueError: what stands in braces is more than a name, and how a number is written: an attribute, a width.
+    """
+    for _, name, width, conversion in _PARSE(text):
+        if name is not None:
+            if conversion or not _NAME.fullmatch(name) or not _FORM.fullmatch(width or ""):
+                more = ", and more" if width or conversion else ""
+                raise ValueError(f"has {name[:60]!r} in braces{more}; expected a name, or a number as {{name:.1f}}")
+            yield name
+
+
+_PARSE = Formatter().parse
+_NAME = re.compile(r"\w{1,100}")
+_FORM = re.compile(r"|\.[0-3]f|g|d")
+"""How a number may be written. A width would fill memory."""
 
 
 def names(value: object) -> frozenset[str]:
-    """The names of the parameters in a value."""
-    asked = _Asked()
+    """The names of the parameters in a value.
+
+    Raises:
+        ValueError: as in ``named_in``.
+    """
+    asked = set[str]()
     parts: list[Any] = [value]
     seen: set[int] = set()  # the many shared parts of a catalogue are searched once
     while parts:
         part = parts.pop()
         if isinstance(part, str):
             if "{" in part:
-                part.format_map(asked)
+                asked.update(named_in(part))
         elif isinstance(part, Param):
-            asked[part.name] = part
+            asked.add(part.name)
+            parts.append(part.means)
         elif id(part) not in seen:
             seen.add(id(part))
             if isinstance(part, tuple | frozenset):

@@ -22,6 +22,7 @@ from datetime import date, time
 from enum import Enum
 from functools import cache
 from importlib.resources import files
+from itertools import chain, pairwise
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -31,6 +32,7 @@ from automotive_cosim.cockpit.occupants import company
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.checked import Steps
 from automotive_cosim.formats.toml import Document
 from automotive_cosim.tasking import notation
@@ -101,7 +103,7 @@ def moves(text: str) -> tuple[Move, ...]:
     Raises:
         UserError: something is wrong with them.
     """
-    return notation.moves(text, _Reader("", shared().names, shared()).decode)
+    return notation.moves(text, _Reader("", shared().names, shared(), _Cost()).decode)
 
 
 def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> Iterator[Task]:
@@ -115,18 +117,76 @@ def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> It
     Raises:
         UserError: file, line and reason.
     """
-    table = document.table
-    names = {**shared.names, **table.get(NAMES, {})}
+    table, cost = document.table, _Cost()
+    own = table.get(NAMES, {})
+    if not isinstance(own, Mapping):
+        raise document.refused((NAMES,), f"is {own!r}; it must be a table")
+    if check is not None and (steps := next(_too_long(table), None)) is not None:
+        raise document.refused(steps, f"is longer than {bounds.TASK_TEXT:,} characters")
+    names = {**shared.names, **own}
     for task_id, entry in table.items():
         if task_id in (DEFAULT, NAMES):
             continue
-        reader = _Reader(task_id, names, shared, check)
+        reader = _Reader(task_id, names, shared, cost, check)
         try:
+            cost.add(bounds.TASK_COST // MOST_TASKS)
+            cost.add_all(table.get(DEFAULT, {}))
             yield reader.task(entry, reader.table(table.get(DEFAULT, {}), {}))
         except UserError as error:
             raise document.refused(_found(table, task_id, (*reader.steps, *reader.below)), str(error)) from error
-        except (TypeError, ValueError, AttributeError, KeyError, RecursionError) as error:
-            raise document.refused(_found(table, task_id, reader.steps), f"cannot be read: {error}") from error
+        except (TypeError, ValueError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
+            why = "nested too deeply, or like itself" if isinstance(error, RecursionError) else str(error)
+            if isinstance(error, TypeError | AttributeError):
+                why = f"another kind of value is expected there ({why})"
+            raise document.refused(_found(table, task_id, reader.steps), f"cannot be read: {why}") from error
+
+
+MOST_HOLES = 3
+"""In a sentence of a lexicon: what varies is found by trying, which takes the length to that power."""
+MOST_TASKS = 5000
+"""In a file, whatever they say."""
+
+
+class _Cost:
+    """What is made of a file, in values and characters: what a name stands for counts wherever it is named."""
+
+    def __init__(self) -> None:
+        self._left = bounds.TASK_COST
+        self._sizes: dict[int, tuple[int, object]] = {}
+
+    def add(self, amount: int) -> None:
+        """Counts what is about to be made.
+
+        Raises:
+            UserError: that is too much.
+        """
+        self._left -= amount
+        if self._left < 0:
+            raise UserError(f"makes more than {bounds.TASK_COST:,} values and characters of this file")
+
+    def add_all(self, value: object) -> None:
+        """Counts a value with all that is in it."""
+        if id(value) not in self._sizes:
+            size = sum(len(part) if isinstance(part, str) else 1 for _, part in _parts(value))
+            self._sizes[id(value)] = size, value
+        self.add(self._sizes[id(value)][0])
+
+
+def _parts(value: object) -> Iterator[tuple[Steps, object]]:
+    """A value and everything in it, with the steps that lead there."""
+    parts: list[tuple[Steps, object]] = [((), value)]
+    while parts:
+        steps, part = parts.pop()
+        yield steps, part
+        if isinstance(part, Mapping):
+            parts += (((*steps, name), each) for name, each in part.items())
+        elif isinstance(part, list):
+            parts += (((*steps, number), each) for number, each in enumerate(part))
+
+
+def _too_long(table: Mapping[str, Any]) -> Iterator[Steps]:
+    """Where a text is longer than anybody writes."""
+    return (steps for steps, part in _parts(table) if isinstance(part, str) and len(part) > bounds.TASK_TEXT)
 
 
 def _found(table: Mapping[str, Any], task_id: str, steps: Steps) -> Steps:
@@ -151,8 +211,11 @@ def _within(holder: Any, steps: Steps) -> Steps:
 class _Reader:
     """Reads one task; ``steps`` leads to what is being read."""
 
-    def __init__(self, task_id: str, names: Mapping[str, Any], shared: Shared, check: Vet | None = None) -> None:
+    def __init__(
+        self, task_id: str, names: Mapping[str, Any], shared: Shared, cost: _Cost, check: Vet | None = None
+    ) -> None:
         self._id = task_id
+        self._cost = cost
         self._names = names
         self._shared = shared
         self._check = check
@@ -173,7 +236,7 @@ class _Reader:
                 self.steps = (name,)
                 raise UnknownNameError("field of a task", name, _KNOWN)
         known = hints(Task)
-        for name, choices in given.get("parameters", {}).items():
+        for name, choices in _dict(given.get("parameters", {})).items():
             self.steps = ("parameters", name)
             self._declare(name, choices)
         made = {name: self._at(name, given[name], known[name]) for name in _OF_TASK if name in given}
@@ -198,7 +261,7 @@ class _Reader:
         columns = self.table(choices, {}) if isinstance(choices, Mapping) else {OF: choices}
         if OF not in columns:
             raise UserError(f"lacks {OF!r}, the values that are drawn")
-        self._parameters[name] = tuple(columns[OF])
+        self._parameters[name] = tuple(_list(columns[OF]))
         self._means[name] = columns
         for column, values in columns.items():
             if len(_list(values)) != len(columns[OF]):
@@ -210,12 +273,14 @@ class _Reader:
         columns = self._means.get(name, {})
         if column not in columns:
             raise UnknownNameError(f"column of the parameter {name}", column, columns)
+        self._cost.add_all(columns[column])
         return columns[column]
 
     def _choices(self, name: str) -> tuple[Any, ...]:
         if name not in self._parameters:
             raise UnknownNameError("parameter", name, self._parameters)
         choices = self._parameters[name]
+        self._cost.add(1 if isinstance(choices, FromCockpit) else len(choices))
         return (choices.kind,) if isinstance(choices, FromCockpit) else choices
 
     def _half(self, given: Mapping[str, Any], first: Half | None = None) -> Half:
@@ -245,7 +310,7 @@ class _Reader:
         for name in ("ways", "slips"):
             if name in given:
                 self.steps = (*steps, name)
-                made[name] = tuple(notation.moves(each, self.decode, moves) for each in several(given[name]))
+                made[name] = tuple([self._way(each, moves) for each in several(given[name])])
         self.steps = (*steps, "basis")
         basis, rule = _parted(given.get("basis", "wish"))
         self.steps = (*steps, "declares")
@@ -264,9 +329,16 @@ class _Reader:
             raise error
         return half
 
+    def _way(self, told: str, solution: Sequence[Move]) -> tuple[Move, ...]:
+        found = notation.moves(told, self.decode, solution)
+        self._cost.add(len(found))
+        return found
+
     def _speech(self, language: Language, given: Any) -> Speech:
         self.steps = (language,)
         own = given if isinstance(given, Mapping) else {"templates": given}
+        if "templates" not in own:
+            raise UserError("lacks 'templates'")
         return Speech(
             language,
             several(own["templates"]),
@@ -278,6 +350,12 @@ class _Reader:
     def _lexicon(self, language: Language, own: Mapping[str, str]) -> Lexicon:
         if not own:
             return self._shared.lexicons[language]
+        for told, said in own.items():
+            holes = told.count("{}")
+            if holes > MOST_HOLES or said.count("{}") > holes or re.search(r"\{[^}]|[^{]\}", said):
+                raise UserError(
+                    f"says {said[:60]!r} for {told[:60]!r}; expected {{}} up to {MOST_HOLES} times in both"
+                )
         return Lexicon.of({**self._shared.lines[language], **{told: _joined(said) for told, said in own.items()}})
 
     # --- values -------------------------------------------------------------------------------------------
@@ -296,6 +374,7 @@ class _Reader:
             return value
         if value not in self._names:
             raise UnknownNameError("shared value", value, self._names)
+        self._cost.add_all(self._names[value])
         return self._names[value]
 
     def table(self, value: Any, base: Mapping[str, Any]) -> dict[str, Any]:
@@ -331,11 +410,17 @@ class _Reader:
 
     def text(self, told: str, name: str) -> Param:
         """A text with what a drawn value means in it."""
-        made = {choice: told.replace(f"{{{name}}}", str(choice)) for choice in self._choices(name)}
+        made = {choice: self._put(told, name, choice) for choice in self._choices(name)}
         for column in {found[2] for found in _WITH_COLUMN.finditer(told) if found[1] == name}:
             for choice, value in zip(made, self._column(name, column), strict=True):
-                made[choice] = made[choice].replace(f"{{{name}.{column}}}", str(value))
+                made[choice] = self._put(made[choice], f"{name}.{column}", value)
         return Param(name, made)
+
+    def _put(self, told: str, name: str, value: Any) -> str:
+        """A text with a value in the place of a name."""
+        held, said = f"{{{name}}}", str(value)
+        self._cost.add(len(told) + told.count(held) * len(said))
+        return told.replace(held, said)
 
     def company(self) -> Param:
         """One to four adults, drawn."""
@@ -366,18 +451,15 @@ def several(told: Any) -> tuple[str, ...]:
 
 
 SEPARATOR = " / "
-_LINE = re.compile(r"(.)\s*\n\s*(.)")
 
 
 def _joined(told: str) -> str:
-    """A text without ends of lines."""
-    return _LINE.sub(_joint, told).strip() if "\n" in told else told
-
-
-def _joint(found: re.Match[str]) -> str:
-    """Around the end of a line: a space, but between Japanese characters none."""
-    before, after = found.groups()
-    return f"{before}{after}" if before > _WIDE and after > _WIDE else f"{before} {after}"
+    """A text without ends of lines: a space for each, but between Japanese characters none."""
+    if "\n" not in told:
+        return told
+    lines = [*filter(None, map(str.strip, told.split("\n")))]
+    ends = ("" if one[-1] > _WIDE and other[0] > _WIDE else " " for one, other in pairwise(lines))
+    return "".join(chain.from_iterable(zip(lines, chain(ends, ("",)), strict=False)))
 
 
 _WIDE = "\u3000"

@@ -32,6 +32,12 @@ class VehicleScript:
         """Takes note of a vehicle that is there."""
         self._cars[name] = car
 
+    def left_m(self, car: str, edge: str, at_m: float) -> float:
+        """How far a vehicle on the road has yet to drive to a place; negative if its way leads there no more."""
+        if self._sumo.edge_of(car) == edge:
+            return at_m - self._sumo.lane_position(car)
+        return float(self._sumo.vehicle.getDrivingDistance(car, edge, at_m, 0))
+
     def end(self, action: VehicleAction) -> None:
         """An action is over."""
         self._left[action.name] -= 1

@@ -24,6 +24,10 @@ ABOVE_LIMITS = 5.0
 """A factor on limits that bind nobody: told a speed above the limit, SUMO 1.28's cars swing around it."""
 EQUAL = 0.01
 """Values that differ by no more are equal."""
+CLOSES_S = 4.0
+"""A vehicle that keeps a distance makes up what is missing in about this time: some reactions of a driver."""
+APART_M = 0.5
+"""A distance is come to when no more is missing."""
 NEAREST_S = 0.5
 """Seconds are counted from the ego's departure to the nearest whole one of the simulation."""
 
@@ -112,7 +116,7 @@ class _Task:
 
     def __init__(self, action: VehicleAction, stage: IncidentStage, script: VehicleScript) -> None:
         self.action = action
-        self.ends_s = math.inf
+        self.ends_s, self.times = math.inf, action.times
         self._watches = [(each.group, _Watch(each, stage, script)) for each in action.when]
 
     def is_due(self, now_s: float) -> bool:
@@ -138,6 +142,8 @@ class StagedVehicle(StagedIncident):
         self._going_on: list[_Task] = []
         self._kept: tuple[float, VehicleAction] | None = None
         """From when on a speed is kept, and whose."""
+        self._adapts: _Task | None = None
+        """What it adapts its speed for."""
         self._moves: VehicleAction | None = None
         """The change of lane that it is about to make."""
 
@@ -163,17 +169,22 @@ class StagedVehicle(StagedIncident):
         sumo = self._stage.sumo
         now_s = sumo.time() - self._begun_s
         is_there = self._car in sumo.vehicle_ids()
-        for task in [task for task in self._waiting if task.is_due(now_s)]:
-            self._waiting.remove(task)
+        for task in [task for task in self._waiting if task.is_due(now_s) and task not in self._going_on]:
+            task.times -= 1
+            if not task.times:
+                self._waiting.remove(task)
             self._stage.script.begun.add(task.action.name)
             if is_there:
                 self._act(task, now_s)
             self._going_on.append(task)
             if not self._waiting and not self._incident.keeps_lane and is_there:
                 sumo.vehicle.setLaneChangeMode(self._car, ANY_LANE_CHANGE)
+        if is_there and self._adapts is not None and self._has_adapted(self._adapts.action):
+            self._adapts.ends_s, self._adapts = now_s, None
         for task in [task for task in self._going_on if task.ends_s <= now_s + NEAREST_S or not is_there]:
             self._going_on.remove(task)
-            self._stage.script.end(task.action)
+            if not task.times:
+                self._stage.script.end(task.action)
         if is_there and self._moves is not None and self._move_over(self._moves):
             self._moves = None
         if is_there and self._kept is not None and self._kept[0] <= now_s + NEAREST_S:
@@ -196,9 +207,16 @@ class StagedVehicle(StagedIncident):
         if action.alone and self._going_on:
             for other in self._going_on:
                 other.ends_s = now_s
+            self._adapts = None
             if self._kept is not None and self._kept[0] > now_s:
                 sumo.vehicle.setSpeed(car, sumo.speed(car))
                 self._kept = None
+        adapts = action.meets_edge or action.gap_m is not None or action.gap_s is not None
+        if self._adapts is not None and (adapts or action.speed_kmh is not None or action.speed_share is not None):
+            self._adapts.ends_s, self._adapts = now_s, None
+        if adapts:
+            task.ends_s, self._adapts, self._kept = math.inf, task, None
+            return
         if action.speed_kmh is not None or action.speed_share is not None:
             mps, from_mps = self._mps(action), sumo.speed(car)
             over_s = action.over_s
@@ -212,6 +230,39 @@ class StagedVehicle(StagedIncident):
                 sumo.vehicle.slowDown(car, mps, over_s)
         if action.lanes or action.lane is not None or (action.of and action.speed_share is None):
             self._moves = action
+
+    def _has_adapted(self, action: VehicleAction) -> bool:
+        """Whether it has come to a distance, or one of two to its place; until then, adapts the speed."""
+        if not action.meets_edge:
+            return self._is_apart(action) and not action.keeps
+        sumo, script = self._stage.sumo, self._stage.script
+        other = script.car(action.of)
+        left_m = script.left_m(self._car, action.meets_edge, action.meets_m)
+        other_m = script.left_m(other, action.of_meets_edge, action.of_meets_m) if other else 0.0
+        left_s = other_m / max(sumo.speed(other), STANDS_MPS) if other_m > 0 else 0.0
+        if left_m <= 0 or left_s <= 1.0:
+            if action.speed_kmh is not None or action.speed_share is not None:
+                sumo.vehicle.setSpeed(self._car, self._mps(action))
+            return True
+        mps = left_m / left_s
+        if action.speed_kmh is not None or action.speed_share is not None:  # it changes steadily to the last one
+            mps = 2 * mps - self._mps(action)
+        sumo.vehicle.setSpeed(self._car, max(0.0, mps))
+        return False
+
+    def _is_apart(self, action: VehicleAction) -> bool:
+        """Whether it is at its distance from another; adapts its speed to that."""
+        sumo, script, car = self._stage.sumo, self._stage.script, self._car
+        other = script.car(action.of)
+        if not other:
+            return True
+        ahead_m, mps = script.ahead_m(car, other), sumo.speed(car)
+        side = 1.0 if action.trails else math.copysign(1.0, ahead_m)
+        wanted_m = (action.gap_m or 0.0) + (action.gap_s or 0.0) * mps
+        wanted_m += sumo.length(other if side > 0 else car) if action.bumper else 0.0
+        more_m = ahead_m - side * wanted_m
+        sumo.vehicle.setSpeed(car, max(0.0, sumo.speed(other) + more_m / CLOSES_S))
+        return abs(more_m) <= APART_M
 
     def _move_over(self, action: VehicleAction) -> bool:
         """Whether it can change into the lane that an action asks for: not within a junction."""

@@ -37,7 +37,7 @@ def main(folder: Path, network: Path | None = None) -> None:
     """Prints the table, the reasons and the distances."""
     reasons: Counter[str] = Counter()
     simulations = Simulations()
-    count = imported = 0
+    count, imported = 0, []
     with tempfile.TemporaryDirectory() as scratch:
         for file in sorted(folder.rglob("*.xosc")):
             root = read_tree(file)
@@ -49,13 +49,17 @@ def main(folder: Path, network: Path | None = None) -> None:
                 reasons[_reason(told)] += 1
                 print(f"| {file.relative_to(folder)} | refused | {told} |")
                 continue
-            imported += 1
+            imported.append(file.stem)
             told = f"{told}; {_followed(made, simulations)}"
             print(f"| {file.relative_to(folder)} | imported | {told} |", flush=True)
     simulations.close()
-    print(f"\n{imported} of {count} are imported\n")
+    print(f"\n{len(imported)} of {count} are imported\n\n| files | what becomes of them |\n|---|---|")
+    print(f"| {len(imported)} | imported: {', '.join(imported)} |")
     for reason, number in reasons.most_common():
-        print(f"| {number} | {reason} |")
+        if number > 1:
+            print(f"| {number} | refused: {reason} |")
+    alone = [reason for reason, number in reasons.items() if number == 1]
+    print(f"| {len(alone)} | refused, one for each of: {'; '.join(alone)} |")
 
 
 def _import(file: Path, root: XmlElement, out: Path, network: Path | None) -> tuple[Path | None, str]:
@@ -75,15 +79,18 @@ def _import(file: Path, root: XmlElement, out: Path, network: Path | None) -> tu
 
 
 def _reason(told: str) -> str:
-    """A reason of refusal without its place and values."""
-    found = re.search(r"(<\w+>.*)", told)
-    return re.sub(r"(= |: )?'[^']*'|[-\d.]+", "", found[1] if found else told)[:100]
+    """A reason of refusal without its place and values: the element, and what of it unless it is outside."""
+    found = re.search(r"<(\w+)>(?: in <\w+>:)? ([^:;,]*)", told)
+    if found is None:
+        return re.sub(r"\S*/(\S+)", r"\1", told).partition(";")[0]
+    why = re.sub(r"^(outside|in <).*|^has |(= )?'[^']*'|\b(Ego|Car\d*)\b|[-\d.]+ m\b.*", "", found[2])
+    return f"`{found[1]}` {' '.join(why.split())}".strip()
 
 
 def _followed(made: Path, simulations: Simulations) -> str:
     """How far vehicles are from their lanes, and from where their speed takes them until they act."""
     told = tomllib.loads((made / "scenario.toml").read_text("utf-8"))
-    net = sumolib.net.readNet(str(made / NET))
+    net = sumolib.net.readNet(str(made / NET), withInternal=True)
     vehicles = [each for each in told.get("incidents", ()) if each["kind"] == "vehicle"]
     ways = {each["name"]: _way(net, each) for each in vehicles}
     scenario = open_scenario(made)
@@ -117,8 +124,9 @@ def _number(vehicle: str) -> int:
 
 
 def _way(net: Any, vehicle: dict[str, Any]) -> list[LineString]:
-    """The lines of the lanes for cars of a vehicle's first edge, and those of the others."""
-    lanes: Iterator[Any] = (lane for edge in vehicle["route"] for lane in net.getEdge(edge).getLanes())
+    """The lines of the lanes for cars of a vehicle's first edge, of the others, and within junctions."""
+    edges = [*map(net.getEdge, vehicle["route"]), *(each for each in net.getEdges() if each.isSpecial())]
+    lanes: Iterator[Any] = (lane for edge in edges for lane in edge.getLanes())
     return [LineString(lane.getShape()) for lane in lanes if lane.allows("passenger")]
 
 

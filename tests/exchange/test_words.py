@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from copy import deepcopy
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -121,10 +122,15 @@ WHILE = (
     '<TraveledDistanceCondition value="50"/>',
 )
 EVENTS = "".join(
-    event(f"e{number}", do(SPEED.format("linear", "rate", number + 1, '<AbsoluteTargetSpeed value="3"/>')),
-          entities(what))
+    event(
+        f"e{number}",
+        do(SPEED.format("linear", "rate", number + 1, '<AbsoluteTargetSpeed value="3"/>')),
+        entities(what),
+    )
     for number, what in enumerate(WHILE)
-)  # fmt: skip
+).replace(
+    '"e1" priority="overwrite" maximumExecutionCount="1"', '"e1" priority="overwrite" maximumExecutionCount="2"'
+)
 STATE = """<Condition name="c" delay="0" conditionEdge="none"><ByValueCondition><StoryboardElementStateCondition
 storyboardElementType="{}" storyboardElementRef="{}" state="{}"/></ByValueCondition></Condition>"""
 IF = """<Condition name="c" delay="0" conditionEdge="none"><ByValueCondition><ParameterCondition parameterRef="is"
@@ -132,7 +138,14 @@ rule="equalTo" value="yes"/></ByValueCondition></Condition>"""
 ASKED = SPEED.format("step", "time", 0, '<AbsoluteTargetSpeed value="${$v / 3.6}"/>')
 FACTOR = '<RelativeTargetSpeed entityRef="ego" value="1.2" speedTargetValueType="factor" continuous="false"/>'
 DELTA = '<RelativeTargetSpeed entityRef="ego" value="$to" speedTargetValueType="delta" continuous="true"/>'
+ROUTED = f"""<RoutePosition><RouteRef>{ROUTE.format("p")}</RouteRef><InRoutePosition><FromLaneCoordinates
+pathS="60" laneId="-2"/></InRoutePosition></RoutePosition>"""
 AHEAD = '<Position><WorldPosition x="900" y="-5.2"/></Position>'
+MEETS = """<SynchronizeAction masterEntityRef="ego" targetTolerance="1" targetToleranceMaster="1"><TargetPosition>{}
+</TargetPosition><TargetPositionMaster>{}</TargetPositionMaster><FinalSpeed>{}</FinalSpeed></SynchronizeAction>"""
+KEEPS = """<LongitudinalAction><LongitudinalDistanceAction entityRef="third" continuous="true" freespace="true"
+displacement="any" {}="3"/></LongitudinalAction>"""
+SPEEDS = ('<AbsoluteSpeed value="7"/>', '<RelativeSpeedToMaster value="3" speedTargetValueType="delta"/>')
 PLACES = {
     "ego": ('<LanePosition roadId="1" laneId="-2" offset="0.2" s="50"/>', ASKED,
             '<VisibilityAction graphics="true" sensors="true" traffic="true"/>',
@@ -149,6 +162,9 @@ PLACES = {
     "sixth": ('<RelativeWorldPosition entityRef="third" dx="80" dy="0.1"/>',),
     "box": ('<LanePosition roadId="1" laneId="-1" s="800"/>',),
     "eighth": ('<WorldPosition x="300" y="-3.6"/>',),
+    "ninth": (ROUTED,),
+    "tenth": (re.sub("(?s)<RouteRef>.*</RouteRef>", '<RouteRef><CatalogReference catalogName="Route" '
+              'entryName="there"/></RouteRef>', ROUTED).replace("60", "120"),),
     "seventh": ('<RoadPosition roadId="1" s="250" t="-5.2"/>',),
 }  # fmt: skip
 SIZES = "".join(f'<ParameterAssignment parameterRef="{name}" value="{value}"/>' for name, value in
@@ -180,6 +196,9 @@ MOVES = "".join((
     event("sky", "<GlobalAction><EnvironmentAction><CatalogReference catalogName='Environment' entryName='fog'/>"
           "</EnvironmentAction></GlobalAction>", TIME.format(0, "none", 8)),
     EVENTS,
+    *(event(f"meets {number}", do(MEETS.format(each[0], each[0], SPEEDS[number % 2])), TIME.format(0, "none", 9))
+      for number, each in enumerate(PLACES.values())),
+    *(event(f"keeps {gap}", do(KEEPS.format(gap)), TIME.format(0, "none", 9)) for gap in ("distance", "timeGap")),
 ))  # fmt: skip
 FILE = f"""<?xml version="1.0" encoding="UTF-8"?>
 <OpenSCENARIO><FileHeader revMajor="1" revMinor="1" date="2026-01-01T00:00:00" description="d" author="a"/>
@@ -398,3 +417,94 @@ def test_what_an_act_does_ends_with_its_stop(sample):
     assert 'name = "last"' in sample.text()
     sample.file.write_text(early, "utf-8")
     assert 'name = "last"' not in sample.text(), "it would begin at 30 s"
+
+
+# --- what vehicles do together -----------------------------------------------------------------------------------
+
+TOGETHER = """<OpenSCENARIO><FileHeader/><RoadNetwork><LogicFile filepath="road.xodr"/></RoadNetwork><Entities>
+<ScenarioObject name="ego">{car}</ScenarioObject><ScenarioObject name="other">{car}</ScenarioObject></Entities>
+<Storyboard><Init><Actions>{places}</Actions></Init><Story name="s"><Act name="a"><ManeuverGroup name="g"
+maximumExecutionCount="1"><Actors selectTriggeringEntities="false"><EntityRef entityRef="other"/></Actors>
+<Maneuver name="m">{events}</Maneuver></ManeuverGroup></Act></Story></Storyboard></OpenSCENARIO>"""
+AT = '<LanePosition roadId="1" laneId="{}" s="{}"/>'
+WITHIN = """<Condition name="c" delay="0" conditionEdge="rising"><ByEntityCondition><TriggeringEntities
+triggeringEntitiesRule="any"><EntityRef entityRef="ego"/></TriggeringEntities><EntityCondition>
+<RelativeDistanceCondition entityRef="other" value="40" freespace="false" rule="{}Than"
+relativeDistanceType="longitudinal"/></EntityCondition></ByEntityCondition></Condition>"""
+
+
+def together(folder, simulations, *events, other_mps=15, seconds=60):
+    """How far the ego is along the road, how far the other one, and its speed, each second."""
+    first = SPEED.format("step", "time", 0, '<AbsoluteTargetSpeed value="{}"/>')
+    places = private("ego", AT.format(-1, 50), first.format(10)) + private(
+        "other", AT.format(-2, 150), first.format(other_mps)
+    )
+    (folder / "road.xodr").write_text(road(section(0)), "utf-8")
+    text = TOGETHER.format(car=VEHICLE.format("v"), places=places, events="".join(events))
+    (folder / "told.xosc").write_text(text, "utf-8")
+    scenario = open_scenario(import_openscenario(folder / "told.xosc", folder / "made", country="FR"))
+    traffic = simulations.warm(scenario).depart(EgoPlan(scenario.ego.trips[0], "average"))
+    seen = []
+    try:
+        for _ in range(seconds):
+            traffic.advance(1.0)
+            cars = {each.vehicle_id == "ego": each for each in traffic.look().vehicles}
+            if len(cars) == 2:
+                seen.append((cars[True].x_m, cars[False].x_m, cars[False].speed_mps))
+    finally:
+        traffic.close()
+    return seen
+
+
+@pytest.mark.sumo
+@pytest.mark.parametrize(("gap", "value"), [("distance", 40), ("timeGap", 2)])
+def test_a_distance_is_come_to_and_kept(tmp_path, simulations: Simulations, gap, value):
+    keeps = KEEPS.replace("third", "ego").replace('freespace="true"', 'freespace="false"').format(gap)
+    told = event("keeps", do(keeps.replace('"3"', f'"{value}"')), TIME.format(0, "none", 1))
+    seen = together(tmp_path, simulations, told, seconds=40)
+    assert len(seen) == 40
+    for ego_m, other_m, mps in seen[-8:]:
+        assert other_m - ego_m == pytest.approx(value if gap == "distance" else value * mps, abs=3)
+
+
+@pytest.mark.sumo
+def test_two_vehicles_come_to_their_places_at_once(tmp_path, simulations: Simulations):
+    meets = MEETS.format(AT.format(-2, 600), AT.format(-1, 400), SPEEDS[0])
+    seen = together(tmp_path, simulations, event("meets", do(meets), TIME.format(0, "none", 1)))
+    when = next(number for number, (ego_m, _, _) in enumerate(seen) if ego_m >= 400 + FRONT_M)
+    assert seen[when][1] == pytest.approx(600 + FRONT_M, abs=15)
+    assert seen[when + 3][2] == pytest.approx(7, abs=0.5)
+
+
+@pytest.mark.sumo
+@pytest.mark.parametrize(("times", "starts"), [(1, 1), (9, 2)])
+def test_what_is_carried_out_again_waits_anew(tmp_path, simulations: Simulations, times, starts):
+    speed = SPEED.format("step", "time", 0, '<AbsoluteTargetSpeed value="{}"/>')
+    told = [event("drives", do(speed.format(20)), WITHIN.format("less")),
+            event("stops", do(speed.format(0)), WITHIN.format("greater"))]  # fmt: skip
+    again = [each.replace('maximumExecutionCount="1"', f'maximumExecutionCount="{times}"') for each in told]
+    seen = together(tmp_path, simulations, *again, other_mps=0, seconds=50)
+    moves = [mps > 3 for _, _, mps in seen]
+    begun = sum(now and not before for before, now in pairwise(moves))
+    assert begun >= starts
+    assert begun == 1 or times > 1
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [
+        (' maximumExecutionCount="1"><Action name="do moves"', ' maximumExecutionCount="2"><Action name="do moves"',
+         "<Event> is carried out again at once"),
+        ('storyboardElementRef="moves"', 'storyboardElementRef="e1"', "event that is carried out more than once"),
+        ('<AbsoluteSpeed value="7"', '<AbsoluteSpeed value="-7"', "<AbsoluteSpeed> .* do not reverse"),
+        ('traffic="true"', 'traffic="false"', "<VisibilityAction> hides a vehicle from traffic"),
+        ('pathS="60" laneId="-2"', 'pathS="60" laneId="-7"', "is on lane -7, which the route does not have there"),
+        ('pathS="60"', 'pathS="6000"', r"<RoutePosition> is \d+ m beyond the end of its route"),
+        ('displacement="any" distance', 'displacement="leadingReferencedEntity" distance', "<LongitudinalDistance"),
+    ],
+)  # fmt: skip
+def test_what_vehicles_cannot_do_is_refused(sample, before, after, told):
+    assert before in FILE
+    sample.file.write_text(FILE.replace(before, after), "utf-8")
+    with pytest.raises(ScenarioError, match=told):
+        sample.text()

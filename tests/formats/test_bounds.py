@@ -29,6 +29,7 @@ from automotive_cosim.osm import extract
 from automotive_cosim.publish import archive
 from automotive_cosim.report.playback import open_picture
 from automotive_cosim.run.road import read_road
+from automotive_cosim.tasking.catalogue import Catalogue
 
 PACKAGE = Path(automotive_cosim.__file__).parent
 
@@ -110,6 +111,10 @@ def prompt(path: Path) -> None:
     resolved(str(path))
 
 
+def own_tasks(path: Path) -> None:
+    Catalogue().add_folder(path.parent)
+
+
 def scanned(path: Path) -> None:
     scan(path, lambda name, attributes, line: None, error=UserError)
 
@@ -141,11 +146,28 @@ class Over:
 
 
 SHEET, COUNTS, ROAD = "a workbook", "a table of counts as text", "a recorded road"
+TASKS = "tasks in TOML"
 LINES, SUMO = "lines of JSON", "SUMO's XML"
 MANY, DEAR_TOLD = "too many", "more memory or processor time"
 HEAD = '{"format":1}\n'
 BAD = (
     Over("TOML", "p.toml", ("TEXT_BYTES", 10), text_of("a = 'xxxxxx'\n"), read_toml, "larger than"),
+    Over(
+        TASKS,
+        "p.toml",
+        ("TASK_TEXT", 10),
+        text_of(f"t.goal = '{'x' * 11}'"),
+        own_tasks,
+        "longer than 10 characters",
+    ),
+    Over(
+        TASKS,
+        "p.toml",
+        ("TASK_COST", 7),
+        text_of("[default]\ntells = [1,1,1,1,1,1]\n[t]"),
+        own_tasks,
+        "of this file",
+    ),
     Over("a prompt", "p.md", None, text_of("x" * (MOST_CHARACTERS + 1)), prompt, "characters"),
     Over("JSON", "a.json", ("VALUES", 10), text_of("[" + "1," * 11 + "1]"), files.read_json, MANY),
     Over("JSON", "a.gz", ("FREELY_UNPACKED_BYTES", 9000), packed(" " * 9999), files.read_json, "unpacks to"),

@@ -423,6 +423,9 @@ def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
                 ("[[1], [2]]", "neither a list of values nor"),
             )
         ),
+        ("[factors]\ndrive = ['grid_june']\nseed = [0.5]", "whole numbers from 0"),
+        ("[factors]\ndrive = ['grid_june']\nseed = [true]", "whole numbers from 0"),
+        ("[factors]\ndrive = ['grid_june']\nseed = { least = -1, most = 3 }", "whole numbers from 0"),
         ("[factors]\nhour = [3]", "give one of the two"),
         ("[factors]\ndrive = ['grid_yune']", "did you mean 'grid_june'"),
         ("[factors]\ndrive = ['grid_june']\n[failure]\nevents = ['blue_ligt']", "did you mean 'blue_light'"),

@@ -1,15 +1,19 @@
 """A folder of tasks of one's own joins the catalogue, or is refused with file, line and reason."""
 
 import re
+import time
 from pathlib import Path
 
 import pytest
 
+import automotive_cosim.tasks
 from automotive_cosim.cockpit.signals import SEAT
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats import bounds
 from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, SignalIs
 from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.reading import moves, several
 from automotive_cosim.tasking.task import Dimension, Task
 from tests.laws import over
 
@@ -134,6 +138,81 @@ def test_a_broken_table_is_refused_with_its_line(right, wrong, line, said, tmp_p
         read(tmp_path, DATA.replace(right, wrong, 1))
     assert f"line {line}" in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+SELF = "[names]\nround = { like = 'round' }\n"
+DOUBLING = "[names]\na30 = {}\n" + "".join(
+    f"a{n} = {{ like = 'a{n + 1}', start = {{ like = 'a{n + 1}' }} }}\n" for n in range(30)
+)
+BRACES = "(" * 3000 + ")" * 3000
+SPACES = " " * 9000
+
+
+@over(
+    [
+        ('["my", "her"]', '["{level.__class__}", "her"]', "in braces"),
+        ('"Warm {seat} seat.', '"Warm {seat.__class__} seat.', "'seat.__class__' in braces"),
+        ('"Warm {seat} seat.', '"Warm {seat[0]} seat.', "'seat[0]' in braces"),
+        ('"Warm {seat} seat.', '"Warm {seat:>99} seat.', "'seat' in braces, and more"),
+        ('"Warm {seat} seat.', '"Warm seat} seat.', "Single '}'"),
+        ('"Warm {seat} seat.', '"Warm {seat!r} seat.', "'seat' in braces, and more"),
+        ("tap phone.quiet", "wait 99999999999", "from 1 to 10,000 s"),
+        ("tap phone.quiet", "wait 9000; wait 9000", "more than 1,000 moves"),
+        ("first 1; ", "first -1; ", "the solution has 3 moves"),
+        ("phone.do_not_disturb = true", BRACES, "nested too deeply"),
+        ("tap phone.quiet", "tap " + SPACES * 2, "longer than 10,000 characters"),
+        ("difference = ", "only_english = 'x'\nde = { templates = ['a'] }\ndifference = ", "1 in German"),
+        ("difference = ", "de = { words = {} }\ndifference = ", "lacks 'templates'"),
+        ("difference = ", "de = { templates = ['a'], lines = { a = '{:>99}' } }\ndifference = ", "in both"),
+        (
+            "difference = ",
+            "de = { templates = ['a'], lines = { '{}{}{}{}' = 'a' } }\ndifference = ",
+            "up to 3 times",
+        ),
+        ("own_pair", "'../own_pair'", "up to 100 letters"),
+        ("own_pair", '"own\\u001b[31m\\npair"', "up to 100 letters"),
+        ("own_pair", "o" * 101, "up to 100 letters"),
+        ("[50.0, 100.0]", "[]", "texts or numbers"),
+        ("[50.0, 100.0]", "[[50.0], [100.0]]", "texts or numbers"),
+        (
+            "[50.0, 100.0]",
+            f"[50.0]\nparameters.some = {[*range(1000)]}\nparameters.more = {[*range(1000)]}",
+            "2e+06 sets",
+        ),
+        ("weather = [", f"origin = [1{'0' * 400}, 0], weather = [", "cannot be read"),
+        ('"paris_centre",', f"'round' }}\n{SELF}#", "like itself"),
+        ('"paris_centre",', f"'a0' }}\n{DOUBLING}#", "values and characters"),
+        ('"paris_centre",', f'"paris_centre", scenario = "{"a" * 5000}",', "no scenario named"),
+        ("parameters.level", "parameters.some = 3\nparameters.level", "it must be a list"),
+        ("[default]", "names = 3\n[default]", "it must be a table"),
+        ("slips = ", "slips = 3 # ", "it must be a list"),
+        ("goal = ", "goal = { param = [] } # ", "another kind of value"),
+        ("goal = ", "goal = 3 # ", "it must be a text"),
+    ]
+)
+def test_a_table_that_means_harm_is_refused_in_a_line_and_at_once(right, wrong, said, tmp_path, monkeypatch):
+    assert right in DATA
+    monkeypatch.setattr(bounds, "TASK_COST", 200_000)
+    begun = time.process_time()
+    with pytest.raises(UserError, match=re.escape(said)) as caught:
+        read(tmp_path, DATA.replace(right, wrong, 1))
+    assert time.process_time() - begun < 20
+    assert len(str(caught.value)) < 1000 + len(str(tmp_path))
+    assert str(caught.value).isprintable()
+
+
+def test_no_task_takes_the_name_of_a_shipped_one(tmp_path):
+    (tmp_path / "own.toml").write_text(DATA.replace("own_pair", "hvac_fan_max"))
+    with pytest.raises(UserError, match=r"line 7: .*occurs twice"):
+        Catalogue(Path(automotive_cosim.tasks.__file__).parent).add_folder(tmp_path)
+
+
+def test_reading_what_goes_on_over_lines_costs_no_more_than_its_length():
+    told = "tap\n" + " " * 200_000 + "a"
+    begun = time.process_time()
+    assert moves(told) == (Tap("a"),)
+    assert several(told + " / b") == ("tap a", "b")
+    assert time.process_time() - begun < 5
 
 
 @pytest.mark.slow
