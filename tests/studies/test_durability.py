@@ -120,7 +120,7 @@ class Disturbed:
 
     def __init__(self, command: Command, place: Path, rooms: Path, program: Any) -> None:
         self.command = command
-        self._place = place
+        self.place = place
         self._rooms = rooms
         self._program = program
         self._number = 0
@@ -131,12 +131,12 @@ class Disturbed:
         room = self._rooms / f"room{self._number}"
         room.mkdir()
         if self.command.writes_into:
-            shutil.copytree(self._place / "given", room / "out")
+            shutil.copytree(self.place / "given", room / "out")
         return room / self.command.name
 
     def words(self, out: Path) -> list[str]:
         """The command line."""
-        named = {"OUT": str(out), "GIVEN": str(self._place / "given")}
+        named = {"OUT": str(out), "GIVEN": str(self.place / "given")}
         return [
             sys.executable, "-c", "from automotive_cosim.cli.main import main; main()",
             *(named.get(word, word) for word in self.command.words),
@@ -146,7 +146,7 @@ class Disturbed:
         """Starts it; its standard error goes beside the place."""
         with (out.parent / "err").open("a") as err:
             return self._program(
-                *self.words(out), cwd=self._place, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=err,
+                *self.words(out), cwd=self.place, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=err,
                 env=os.environ | environment,
             )  # fmt: skip
 
@@ -212,7 +212,7 @@ def without_room(disturbed: Disturbed, expected: tuple[int, Any], place: Path) -
         folder.mkdir()
     words = [word.replace(str(given), str(room)) for word in disturbed.words(given / disturbed.command.name)]
     if "space.toml" in words:
-        shutil.copy(place / "space.toml", log)
+        shutil.copy(disturbed.place / "space.toml", log)
     named = {"ROOM": str(room), "KEPT": str(kept), "GIVEN": str(given)}
     tried = subprocess.run(
         ["unshare", "-rm", "sh", "-c", FULL, "sh", *words], cwd=log, env=os.environ | named, check=False,
