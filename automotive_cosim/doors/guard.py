@@ -11,7 +11,7 @@ import asyncio
 import hmac
 from collections.abc import Collection
 from http import HTTPStatus
-from typing import ClassVar
+from typing import Any, ClassVar
 from urllib.parse import parse_qs
 
 from starlette.datastructures import Headers
@@ -32,7 +32,10 @@ PATIENCE_S = 10.0
 """In which a connection has to have sent one."""
 
 
-class Punctual(AutoHTTPProtocol):  # type: ignore[misc, valid-type]
+_Protocol: Any = AutoHTTPProtocol
+
+
+class Punctual(_Protocol):  # type: ignore[misc]
     """A connection that makes room for others until it has sent a whole request, and has to do so soon.
 
     uvicorn waits for ever, and at its own limit refuses whoever comes.

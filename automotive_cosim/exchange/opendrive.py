@@ -98,7 +98,8 @@ def _take_offset_in(header: ET.Element) -> None:
     offset, reference = header.find("offset"), header.find("geoReference")
     if offset is None or reference is None:
         return
-    terms = dict(term.lstrip("+").partition("=")[::2] for term in (reference.text or "").split())
+    parts = (term.lstrip("+").partition("=") for term in (reference.text or "").split())
+    terms = {name: value for name, _, value in parts}
     if terms.get("proj") == "utm":  # which has no origin of its own
         north_m = "0" if terms.pop("south", None) is None else "10000000"
         origin = {"lat_0": "0", "lon_0": f"{6 * int(terms.pop('zone')) - 183}", "k": "0.9996"}

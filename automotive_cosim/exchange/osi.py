@@ -95,7 +95,8 @@ def write_osi(recording: Recording, target: Path, road: Path | None = None) -> N
     messages = _Messages(recording, "" if road is None else road.name)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-osi-") as scratch:
         made = Path(scratch) / target.name  # its library takes no open file
-        with MultiTraceWriter() if target.suffix == ".mcap" else SingleTraceWriter() as trace:
+        trace: Any = MultiTraceWriter() if target.suffix == ".mcap" else SingleTraceWriter()
+        with trace:
             about = {
                 "version": osi,
                 "zero_time": recording.road.seconds[0].local_time,

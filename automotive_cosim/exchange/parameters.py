@@ -6,15 +6,15 @@ import ast
 import math
 import operator
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 PARAMETER = re.compile(r"\$([A-Za-z_]\w*)")
-_OPERATORS: Mapping[type[ast.AST], Callable[..., float]] = {
+_OPERATORS: Mapping[type[ast.AST], Any] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.Mod: operator.mod, ast.USub: operator.neg, ast.UAdd: operator.pos,
 }  # fmt: skip
-_FUNCTIONS: Mapping[str, Callable[..., float]] = {
+_FUNCTIONS: Mapping[str, Any] = {
     "abs": abs, "acos": math.acos, "asin": math.asin, "atan": math.atan, "ceil": math.ceil, "cos": math.cos,
     "floor": math.floor, "max": max, "min": min, "pow": math.pow, "round": round, "sin": math.sin,
     "sign": lambda value: (value > 0) - (value < 0), "sqrt": math.sqrt, "tan": math.tan,
@@ -50,7 +50,8 @@ def _of(name: str, scope: Mapping[str, str]) -> str:
     return scope[name]
 
 
-def _number(node: Any) -> float:
+def _number(node: Any) -> Any:
+    """A whole number stays one."""
     match node:
         case ast.Constant(value=int() | float() as value):
             return value

@@ -41,7 +41,9 @@ def table() -> Mapping[str, SchemaRow]:
     """The rows by the elements' names."""
     rows: dict[str, SchemaRow] = {}
     row = None
-    for line in files(__package__).joinpath("openscenario.txt").read_text(encoding="utf-8").splitlines():
+    for line in (
+        files("automotive_cosim.exchange").joinpath("openscenario.txt").read_text(encoding="utf-8").splitlines()
+    ):
         head, _, rest = line.partition(":")
         if line.startswith(" "):
             assert row is not None
