@@ -39,6 +39,7 @@ from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, 
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import CosimError
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
 
@@ -270,9 +271,7 @@ def run(
                     continue
                 print(*_news(drives[-1], time.monotonic() - begun_s), sep="\n", file=sys.stderr, flush=True)
                 if file is not None:
-                    draft = file.with_suffix(".part")
-                    draft.write_text(json.dumps(asdict(drives[-1])), "utf-8")
-                    draft.replace(file)
+                    write_whole(file, json.dumps(asdict(drives[-1])))
     return drives
 
 

@@ -54,7 +54,7 @@ for _name in (
 typer.main.get_command = cache(typer.main.get_command)
 
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
-ABOUT_PROCESSES = {"test_faults", "test_confinement", "test_vetting"}
+ABOUT_PROCESSES = {"test_faults", "test_confinement", "test_file_check"}
 """Modules whose simulations start as programs start them."""
 _forbidden = False
 

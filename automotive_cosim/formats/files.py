@@ -61,13 +61,23 @@ def read_json(path: Path, most_values: int | None = None) -> Any:
         OSError: it cannot be read.
         ValueError: it is not JSON, or holds more values.
     """
+    return parse_json(read_unpacked(path), most_values)
+
+
+def read_unpacked(path: Path) -> bytes:
+    """The content of a file, also packed, at most ``bounds.UNPACKED_BYTES``.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is larger.
+    """
     data = bytearray()  # grows with the file: reading a gigabyte at once would reserve it
     with opened(path) as file:
         while chunk := file.read(bounds.CHUNK_BYTES):
             data += chunk
             if len(data) > bounds.UNPACKED_BYTES:
                 raise ValueError("it is larger than 1 GB")
-    return parse_json(bytes(data), most_values)
+    return bytes(data)
 
 
 def read_json_lines(path: Path) -> list[Any]:

@@ -222,38 +222,58 @@ def copy(source: Path, target: Path, most_bytes: int) -> int:
 
 @contextmanager
 def appearing(out: Path, *, replaces: bool = False) -> Iterator[Path]:
-    """An empty folder that becomes ``out`` if the block succeeds; otherwise nothing is left.
+    """An empty folder that becomes ``out`` if the block succeeds and fills it; otherwise nothing is left.
+
+    Nobody else can make that folder meanwhile. What a killed program has left of it is removed.
 
     Args:
         out: where it goes, in a folder that is there.
         replaces: in the place of what is there.
 
     Raises:
-        UserError: there is something else by then.
+        UserError: another program is making it, or there is something else by then.
         OSError: it cannot be written.
     """
     # Named before it is made, so that a signal between the two leaves nothing.
-    scratch = out.absolute().parent / f".{out.name}-{secrets.token_hex(8)}"
+    home = out.absolute().parent
+    scratch = home / f".{out.name}-{secrets.token_hex(8)}"
     building, replaced = scratch / "new", scratch / "replaced"
+    with locked(home / f".{out.name}.lock", out):
+        try:
+            _clear(home, out)
+            scratch.mkdir(mode=0o700)
+            building.mkdir()
+            yield building
+            if any(building.iterdir()):
+                _exchange(building, out, replaced if replaces else None)
+        finally:
+            try:
+                shutil.rmtree(scratch, ignore_errors=True)
+            finally:  # where a signal interrupted that
+                shutil.rmtree(scratch, ignore_errors=True)
+
+
+def _clear(home: Path, out: Path) -> None:
+    """Removes what was left by programs that were killed while they made a folder; nobody else makes it now."""
+    for left in home.glob(".*-" + 16 * "[0-9a-f]"):
+        if left.name[1:-17] == out.name and not left.is_symlink():
+            if (left / "replaced").is_dir() and not out.exists():
+                (left / "replaced").rename(out)
+            shutil.rmtree(left, ignore_errors=True)
+
+
+def _exchange(building: Path, out: Path, replaced: Path | None) -> None:
+    """Puts a folder in its place; what is there goes to ``replaced``, if that may be."""
+    if replaced is not None and out.exists():
+        out.rename(replaced)
     try:
-        scratch.mkdir(mode=0o700)
-        building.mkdir()
-        yield building
-        if replaces and out.exists():
-            out.rename(replaced)
-        try:
-            building.rename(out)
-        except BaseException as error:
-            if replaced.exists():
-                replaced.rename(out)
-            if getattr(error, "errno", 0) in (errno.EEXIST, errno.ENOTEMPTY, errno.ENOTDIR):
-                raise UserError(f"{out} exists; give --out another folder, or delete that one") from error
-            raise
-    finally:
-        try:
-            shutil.rmtree(scratch, ignore_errors=True)
-        finally:  # where a signal interrupted that
-            shutil.rmtree(scratch, ignore_errors=True)
+        building.rename(out)
+    except BaseException as error:
+        if replaced is not None and replaced.exists():
+            replaced.rename(out)
+        if getattr(error, "errno", 0) in (errno.EEXIST, errno.ENOTEMPTY, errno.ENOTDIR):
+            raise UserError(f"{out} exists; give --out another folder, or delete that one") from error
+        raise
 
 
 def check_writable(folder: Path) -> None:

@@ -7,9 +7,7 @@ environment or the path of a home folder is refused.
 
 from __future__ import annotations
 
-import gzip
 import json
-import lzma
 import os
 import re
 import tempfile
@@ -20,7 +18,7 @@ from typing import Any
 
 from automotive_cosim.contracts import FeedbackCode, Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.formats.files import file_sha256, read_unpacked
 from automotive_cosim.formats.keys import letters, spelled
 from automotive_cosim.formats.layout import TRACES
 from automotive_cosim.formats.writing import copy, drafted, make_folder, write_whole
@@ -142,13 +140,14 @@ def _without_homes(value: Any) -> Any:
 def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
     """
     Raises:
-        UserError: a file contains a key of the environment or the path of a home folder.
+        UserError: a file contains a key of the environment or the path of a home folder, or cannot be unpacked.
     """
     secrets = {value: name for name, value in environment.items() if re.search(SECRET, name, re.IGNORECASE)}
     for name in archive.members(staged):
-        data = (staged / name).read_bytes()
-        data = {".gz": gzip.decompress, ".xz": lzma.decompress}.get(Path(name).suffix, bytes)(data)
-        text = data.decode(errors="replace")
+        try:
+            text = read_unpacked(staged / name).decode(errors="replace")
+        except (OSError, ValueError) as error:
+            raise UserError(f"{name} cannot be read: {error}; rerun its episode, or leave it out") from error
         told = letters(text)
         for secret, variable in secrets.items():
             if any(spelled(told, secret)):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -38,6 +39,19 @@ def check_target(target: Path) -> None:
     """
     if target.exists() and any(target.iterdir()):
         raise UserError(f"{target} exists; give --out another folder, or delete that one")
+
+
+@contextmanager
+def new_folder(target: Path) -> Iterator[Path]:
+    """A folder for a copy, which becomes the target at the end if it is filled; nobody else makes it meanwhile.
+
+    Raises:
+        UserError: the target is not empty, or another program is making it.
+        OSError: it cannot be written.
+    """
+    check_target(target)
+    with appearing(make_folder(target.parent) / target.name) as draft:
+        yield draft
 
 
 def check_demand(configuration: Configuration) -> None:
@@ -91,7 +105,7 @@ def demand(types: str, vehicles: Iterable[str]) -> str:
 
 
 def write_variant(
-    target: Path,
+    draft: Path,
     scenario: Scenario,
     configuration: Configuration,
     routes: tuple[str, str],
@@ -100,14 +114,14 @@ def write_variant(
     begin_s: float | None = None,
     start_hour: int | None = None,
 ) -> None:
-    """Copies a scenario with another demand; the copy appears whole.
+    """Copies a scenario with another demand.
 
     Only the files that its configuration names are copied, and those that they name: regular ones, through no link
     out of its folder; beside them its ``scenario.toml`` and README. Without ``scenario.toml`` the copy is again a
     folder with one ``.sumocfg``, whose time of day is its own.
 
     Args:
-        target: the copy's folder, which is empty or missing.
+        draft: of ``new_folder``.
         scenario: what to copy.
         configuration: its configuration.
         routes: name and text of the file of the new demand.
@@ -116,32 +130,31 @@ def write_variant(
         start_hour: local hour of the ego's departure; None keeps it.
 
     Raises:
-        UserError: the target exists, or a file leads out of the folder or is too large.
+        UserError: a file leads out of the folder or is too large.
         OSError: a file cannot be read or written.
     """
     toml = scenario.folder / "scenario.toml"
     described = toml.is_file()
     home = scenario.folder if described else configuration.path.absolute().parent
-    with appearing(make_folder(target.parent) / target.name) as draft:
-        config = draft / (scenario.sumo.config if described else f"{scenario.name}.sumocfg")
-        folder = make_folder(draft, config.parent.relative_to(draft).as_posix())
-        dropped = {"end"} if described else OF_GIVEN_DEMAND | {"end"}  # that only spaces out flows
-        options = {name: value for name, value in configuration.options.items() if name not in dropped}
-        inputs = _copied(configuration, home, draft, folder) | {"route-files": routes[0]}
-        if begin_s is not None:
-            options["begin"] = f"{begin_s:g}"
-        lines = (f"    <{name} value={quoteattr(value)}/>\n" for name, value in {**inputs, **options}.items())
-        write_whole(config, f"<configuration>\n{''.join(lines)}</configuration>\n")
-        write_whole(folder / routes[0], routes[1])
-        if described:
-            text = settings(files.read_text(_inside(toml, home)))
-            if start_hour is not None:
-                start = r"(?m)^(start = \"?\d{4}-\d\d-\d\dT)\d\d:\d\d(:\d\d)?"
-                text = re.sub(start, rf"\g<1>{start_hour:02}:00:00", text)
-            write_whole(draft / toml.name, text)
-            if (about := home / "README.md").is_file():  # whose map it is
-                copy(_inside(about, home), draft / about.name, bounds.TEXT_BYTES)
-        write_whole(draft / record[0], json.dumps(record[1], indent=1, ensure_ascii=False))
+    config = draft / (scenario.sumo.config if described else f"{scenario.name}.sumocfg")
+    folder = make_folder(draft, config.parent.relative_to(draft).as_posix())
+    dropped = {"end"} if described else OF_GIVEN_DEMAND | {"end"}  # that only spaces out flows
+    options = {name: value for name, value in configuration.options.items() if name not in dropped}
+    inputs = _copied(configuration, home, draft, folder) | {"route-files": routes[0]}
+    if begin_s is not None:
+        options["begin"] = f"{begin_s:g}"
+    lines = (f"    <{name} value={quoteattr(value)}/>\n" for name, value in {**inputs, **options}.items())
+    write_whole(config, f"<configuration>\n{''.join(lines)}</configuration>\n")
+    write_whole(folder / routes[0], routes[1])
+    if described:
+        text = settings(files.read_text(_inside(toml, home)))
+        if start_hour is not None:
+            start = r"(?m)^(start = \"?\d{4}-\d\d-\d\dT)\d\d:\d\d(:\d\d)?"
+            text = re.sub(start, rf"\g<1>{start_hour:02}:00:00", text)
+        write_whole(draft / toml.name, text)
+        if (about := home / "README.md").is_file():  # whose map it is
+            copy(_inside(about, home), draft / about.name, bounds.TEXT_BYTES)
+    write_whole(draft / record[0], json.dumps(record[1], indent=1, ensure_ascii=False))
 
 
 def _copied(configuration: Configuration, home: Path, draft: Path, folder: Path) -> dict[str, str]:

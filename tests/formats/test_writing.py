@@ -296,4 +296,19 @@ def test_a_folder_appears_whole_or_not_at_all(tmp_path):
     with appearing(out, replaces=True) as folder:
         write_whole(folder / "y", "y")
     assert [each.name for each in out.iterdir()] == ["y"]
+    with appearing(tmp_path / "empty"):
+        pass
     assert [each.name for each in tmp_path.iterdir()] == ["out"]
+
+
+def test_what_a_killed_program_has_left_of_a_folder_is_removed_by_the_next_and_two_do_not_make_it_at_once(tmp_path):
+    out, kept = tmp_path / "out", tmp_path / f".other-{16 * '0'}"
+    kept.mkdir()
+    for name in ("new", "replaced"):
+        make_folder(tmp_path, f".out-{16 * 'a'}/{name}")
+        write_whole(tmp_path / f".out-{16 * 'a'}" / name / "x", name)
+    with appearing(out, replaces=True):
+        assert (out / "x").read_text() == "replaced"  # the kill came before the new one had taken its place
+        with pytest.raises(UserError, match="another program is writing"), appearing(out, replaces=True):
+            pass
+    assert {each.name for each in tmp_path.iterdir()} == {"out", kept.name}

@@ -18,7 +18,7 @@ from automotive_cosim.errors import ScenarioError, UnknownNameError, UserError
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.scenarios.routes import LONG_M, chosen_trips, edges_at
-from automotive_cosim.scenarios.variant import write_variant
+from automotive_cosim.scenarios.variant import new_folder, write_variant
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference
@@ -353,7 +353,8 @@ def test_a_copy_with_another_demand_has_the_configurations_files_and_no_others(t
     given = open_scenario(config)
     assert (given.sumo.scale, given.sumo.background_rerouting) == (2.0, 0.5)
     routes = ("mine.rou.xml", '<routes><trip id="a" depart="0" from="c0c1" to="c2c3"/></routes>')
-    write_variant(there, given, read_configuration(config), routes, ("record.json", {}))
+    with new_folder(there) as draft:
+        write_variant(draft, given, read_configuration(config), routes, ("record.json", {}))
     made = open_scenario(there)
     assert (made.sumo.scale, made.sumo.background_rerouting) == (1.0, 0.0)
     assert "end" not in read_configuration(made.config).options
@@ -387,7 +388,8 @@ def _copy(given: Path) -> Path:
     there = given.parent / "there"
     scenario = open_scenario(given)
     routes = ("mine.rou.xml", '<routes><trip id="a" depart="0" from="c0c1" to="c2c3"/></routes>')
-    write_variant(there, scenario, read_configuration(scenario.config), routes, ("record.json", {}))
+    with new_folder(there) as draft:
+        write_variant(draft, scenario, read_configuration(scenario.config), routes, ("record.json", {}))
     return there
 
 

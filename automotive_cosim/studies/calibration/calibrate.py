@@ -48,6 +48,7 @@ def calibrate(
     target: Path,
     options: CalibrationOptions,
     tell: Tell,
+    finish: Callable[[Path], object] = lambda _draft: None,
 ) -> Calibration:
     """Writes a copy of a scenario whose demand carries the counts. A demand that gridlocks is not written.
 
@@ -57,36 +58,38 @@ def calibrate(
         target: the copy's, new or empty; it appears once it is complete.
         options: the user's options.
         tell: called with what happens.
+        finish: adds to the copy before it appears.
 
     Raises:
         CountsError: the counts cannot be used.
-        UserError: the target exists, or the demand has stops or persons.
+        UserError: the target exists or another program is making it, or the demand has stops or persons.
         ScenarioError: SUMO refuses the scenario, or it has no demand.
         SetupError: eclipse-sumo is not installed.
     """
-    variant.check_target(target)
-    configuration = read_configuration(scenario.config)
-    variant.check_demand(configuration)
-    zone = scenario.start.tzinfo
-    assert zone is not None
-    counts = read_counts(counts_file, zone, options.sites)
-    measured = read_travel_times(options.times) if options.times else ()
-    hours = _hours(counts, options)
-    with tempfile.TemporaryDirectory(prefix="automotive-cosim-calibration-") as scratch:
-        copies = copied(configuration, Path(scratch))
-        made = _Calibration(scenario, copies, counts, measured, hours, options, Path(scratch), tell)
-        found, best = made.run()
-    if not found.gridlock:
-        at_hour = hours[0] if options.at_hour is None else options.at_hour
-        variant.write_variant(
-            target,
-            scenario,
-            configuration,
-            (ROUTES, best.demand),
-            (RECORD, found.record()),
-            begin_s=configuration.begin_s + (at_hour - hours[0]) * HOUR_S,
-            start_hour=at_hour,
-        )
+    with variant.new_folder(target) as draft:
+        configuration = read_configuration(scenario.config)
+        variant.check_demand(configuration)
+        zone = scenario.start.tzinfo
+        assert zone is not None
+        counts = read_counts(counts_file, zone, options.sites)
+        measured = read_travel_times(options.times) if options.times else ()
+        hours = _hours(counts, options)
+        with tempfile.TemporaryDirectory(prefix="automotive-cosim-calibration-") as scratch:
+            copies = copied(configuration, Path(scratch))
+            made = _Calibration(scenario, copies, counts, measured, hours, options, Path(scratch), tell)
+            found, best = made.run()
+        if not found.gridlock:
+            at_hour = hours[0] if options.at_hour is None else options.at_hour
+            variant.write_variant(
+                draft,
+                scenario,
+                configuration,
+                (ROUTES, best.demand),
+                (RECORD, found.record()),
+                begin_s=configuration.begin_s + (at_hour - hours[0]) * HOUR_S,
+                start_hour=at_hour,
+            )
+            finish(draft)
     return found
 
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 UNFITTED, CALIBRATED, HELD_OUT = PALETTE[7], PALETTE[0], PALETTE[1]
 
+PAGE = "calibration.html"
+
 MANY_HOURS = 3
 """With more hours, a table of every site and hour is too long to read in a terminal."""
 
@@ -51,7 +53,7 @@ def write_page(folder: Path) -> Path:
         tables=tables,
         plots=plots,
     )
-    page = folder / "calibration.html"
+    page = folder / PAGE
     try:
         with drafted(page) as file:
             write_files(folder, tables, plots.values())

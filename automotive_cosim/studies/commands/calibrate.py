@@ -40,15 +40,16 @@ def calibrate_scenario(
     from automotive_cosim.report.charts import require_plots
     from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.studies.calibration.calibrate import calibrate
-    from automotive_cosim.studies.calibration.page import write_page
+    from automotive_cosim.studies.calibration.page import PAGE, write_page
 
     require_plots()
     given = open_scenario(scenario)
     here = given.folder if Path(scenario).is_dir() else Path(given.name)
     target = out or here.with_name(f"{here.name}_calibrated")
     options = filled(CalibrationOptions, settings)
-    found = calibrate(given, counts, target, options, lambda said, _share: typer.echo(said, err=True))
-    page = None if found.gridlock else write_page(target)
+    found = calibrate(
+        given, counts, target, options, lambda said, _share: typer.echo(said, err=True), finish=write_page
+    )
     if as_json:
         print_json({"out": None if found.gridlock else str(target), **found.record()})
     else:
@@ -60,8 +61,8 @@ def calibrate_scenario(
             err=True,
         )
         raise typer.Exit(1)
-    if page and not as_json:
-        typer.echo(f"scenario: {target}\npage: {page}")
+    if not as_json:
+        typer.echo(f"scenario: {target}\npage: {target / PAGE}")
 
 
 def _print(found: Calibration) -> None:

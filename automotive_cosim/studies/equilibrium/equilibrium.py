@@ -86,21 +86,21 @@ def equilibrate(
         ScenarioError: it is no scenario, or SUMO refuses it.
         SetupError: eclipse-sumo is not installed.
     """
-    variant.check_target(target)
-    scenario = opened(folder, options)
-    configuration = read_configuration(scenario.config)
-    variant.check_demand(configuration)
-    with tempfile.TemporaryDirectory(prefix="automotive-cosim-equilibrium-") as scratch:
-        given = copied(configuration, Path(scratch))
-        types = vehicle_types(given, ["route-files"])  # those of additional files stay where they are
-        steps, best = _search(scenario, configuration, types, options, tell, Path(scratch))
-    kept = min(steps, key=lambda step: step.gap.relative)
-    record: Json = {
-        "options": asdict(options),
-        "kept": kept.number,
-        "steps": [asdict(step) | {"relative_gap": step.gap.relative} for step in steps],
-    }
-    variant.write_variant(target, scenario, configuration, (ROUTES, best.demand), (RECORD, record))
+    with variant.new_folder(target) as draft:
+        scenario = opened(folder, options)
+        configuration = read_configuration(scenario.config)
+        variant.check_demand(configuration)
+        with tempfile.TemporaryDirectory(prefix="automotive-cosim-equilibrium-") as scratch:
+            given = copied(configuration, Path(scratch))
+            types = vehicle_types(given, ["route-files"])  # those of additional files stay where they are
+            steps, best = _search(scenario, configuration, types, options, tell, Path(scratch))
+        kept = min(steps, key=lambda step: step.gap.relative)
+        record: Json = {
+            "options": asdict(options),
+            "kept": kept.number,
+            "steps": [asdict(step) | {"relative_gap": step.gap.relative} for step in steps],
+        }
+        variant.write_variant(draft, scenario, configuration, (ROUTES, best.demand), (RECORD, record))
     return steps
 
 

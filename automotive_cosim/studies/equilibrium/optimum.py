@@ -125,16 +125,16 @@ def compare(
     """
     if find_spec("scipy") is None:
         raise SetupError(f"a system optimum requires scipy: {install_hint('report')}")
-    variant.check_target(target)
-    with tempfile.TemporaryDirectory(prefix="automotive-cosim-optimum-") as scratch:
-        path = Path(scratch) / ROUTES
-        begun = _equilibrium(folder, options, Path(scratch))
-        steps, best = _search(begun, options, tell, path)
-        kept = min(steps, key=lambda step: step.total.total_s).number
-        own, least = (tuple(_driven(each, path, options, seed) for seed in seeds) for each in (begun, best))
-    found = SystemOptimum(steps, kept, own, least)
-    record: Json = {"options": asdict(options)} | found.as_json()
-    variant.write_variant(target, begun.scenario, begun.configuration, (ROUTES, best.demand), (RECORD, record))
+    with variant.new_folder(target) as draft:
+        with tempfile.TemporaryDirectory(prefix="automotive-cosim-optimum-") as scratch:
+            path = Path(scratch) / ROUTES
+            begun = _equilibrium(folder, options, Path(scratch))
+            steps, best = _search(begun, options, tell, path)
+            kept = min(steps, key=lambda step: step.total.total_s).number
+            own, least = (tuple(_driven(each, path, options, seed) for seed in seeds) for each in (begun, best))
+        found = SystemOptimum(steps, kept, own, least)
+        record: Json = {"options": asdict(options)} | found.as_json()
+        variant.write_variant(draft, begun.scenario, begun.configuration, (ROUTES, best.demand), (RECORD, record))
     return found
 
 
