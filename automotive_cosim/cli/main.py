@@ -10,6 +10,7 @@ import io
 import os
 import signal
 import sys
+import threading
 from contextlib import nullcontext
 from typing import Annotated
 
@@ -107,7 +108,18 @@ def main() -> None:
         terminations.append(number)
         raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
 
+    def swallowed(lost: sys.UnraisableHookArgs) -> None:
+        """A callback, such as a weak reference's, cannot raise: what interrupted it comes once more."""
+        if not isinstance(lost.exc_value, KeyboardInterrupt):
+            sys.__unraisablehook__(lost)
+            return
+        number = terminations.pop() if terminations else signal.SIGINT
+        if number == signal.SIGTERM:
+            signal.signal(signal.SIGTERM, terminate)
+        threading.Timer(0.01, os.kill, (os.getpid(), number)).start()
+
     signal.signal(signal.SIGTERM, terminate)
+    sys.unraisablehook = swallowed
     open_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run under an ASCII locale

@@ -255,3 +255,33 @@ def test_no_line_interrupts_who_acts_by_hand(monkeypatch: pytest.MonkeyPatch) ->
     for by_hand in (True, False):
         Live(Console(file=io.StringIO()), by_hand=by_hand)._wait()
     assert started == ["the agent's action"]
+
+
+SWALLOWED = """
+import os, sys, time, weakref
+from automotive_cosim.cli import main
+
+class Thing: pass
+
+def command():
+    thing = Thing()
+    callback = weakref.ref(thing, lambda gone: (os.kill(os.getpid(), int(sys.argv[1])), sum(range(10**5))))
+    try:
+        del thing
+        time.sleep(20)
+    except KeyboardInterrupt:
+        return main.INTERRUPTED
+    return 0
+
+main._run = command
+main.main()
+"""
+
+
+@pytest.mark.parametrize(("number", "code"), [(15, 143), (2, 130)])
+def test_a_signal_that_lands_in_a_callback_is_not_lost(number, code):
+    """What is raised in a callback of a weak reference is swallowed by the interpreter."""
+    ended = subprocess.run(
+        [sys.executable, "-c", SWALLOWED, str(number)], capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, ended.stderr) == (code, "error: interrupted\n")
