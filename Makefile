@@ -62,7 +62,8 @@ $(VENV)/.test: NEEDS = the package and what the tests need: 119 packages, 1.8 GB
 $(VENV)/.dev: NEEDS = the package, what the tests need, and the checkers: 135 packages, 2.1 GB
 $(VENV)/.docs: NEEDS = the package and Sphinx: 61 packages, 0.6 GB
 
-# uv takes a fraction of pip's time. Where it cannot (it knows pip's index, but not pip's other settings), pip does it.
+# uv takes a fraction of pip's time. Where it cannot (it knows pip's index and, like pip, the system's certificates, but not pip's
+# other settings), pip does it.
 $(VENV)/.%: pyproject.toml constraints.txt
 	@echo "$$(date +%T) set-up, once: an environment in $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
@@ -70,7 +71,7 @@ $(VENV)/.%: pyproject.toml constraints.txt
 	@$(PIP) install --quiet -c constraints.txt uv || true
 	@echo "$$(date +%T) $(NEEDS)"
 	@index=$$($(PIP) config list | sed -n "s/.*\.index-url='\(.*\)'/\1/p" | tail -1); \
-	    $(BIN)/uv pip install --python $(BIN)/python $${index:+--default-index "$$index"} $(WHAT) || \
+	    UV_SYSTEM_CERTS=1 $(BIN)/uv pip install --python $(BIN)/python $${index:+--default-index "$$index"} $(WHAT) || \
 	    { echo "$$(date +%T) uv could not; pip installs the same, which takes longer"; $(PIP) install $(WHAT); }
 	@touch $@ $(VENV)/.run $(if $(filter dev,$*),$(VENV)/.test)
 	@echo "$$(date +%T) set up"
