@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import resource
+import signal
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -21,6 +22,8 @@ from automotive_cosim.formats.bounds import BUNDLE, Cost
 from automotive_cosim.formats.files import is_file
 
 T = TypeVar("T")
+
+ENDING = frozenset({signal.SIGINT, signal.SIGTERM})
 
 
 class LimitedProcesses:
@@ -55,7 +58,7 @@ class LimitedProcesses:
         Raises:
             UserError: it takes more memory or time than a file of that size may, or is malformed.
         """
-        return self._result(self._pool.submit(_call, self._path, self._seconds, what, given))
+        return self._result(self._submitted(what, given))
 
     def map(self, what: Callable[..., T], *given: Iterable[Any]) -> Iterator[T]:
         """The same for many calls, in their order.
@@ -63,10 +66,16 @@ class LimitedProcesses:
         Raises:
             UserError: as ``call``.
         """
-        futures = [
-            self._pool.submit(_call, self._path, self._seconds, what, each) for each in zip(*given, strict=True)
-        ]
+        futures = [self._submitted(what, each) for each in zip(*given, strict=True)]
         return map(self._result, futures)
+
+    def _submitted(self, what: Callable[..., T], given: tuple[Any, ...]) -> Future[T]:
+        """Signals wait meanwhile: a pool that is interrupted while it starts can be neither used nor ended."""
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+        try:
+            return self._pool.submit(_call, self._path, self._seconds, what, given)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     def _result(self, future: Future[T]) -> T:
         try:
@@ -98,7 +107,8 @@ def _bytes(path: Path) -> int:
 
 
 def _limit(more_bytes: int) -> None:
-    """Limits the memory of this process, and what its libraries print when they end."""
+    """Limits the memory of this process, and what its libraries print when they end; signals reach it."""
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
     most = pages * resource.getpagesize() + more_bytes
