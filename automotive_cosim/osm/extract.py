@@ -6,6 +6,7 @@ ways (paths, railways) are removed, because each path that meets a road would sp
 
 from __future__ import annotations
 
+import gc
 import os
 import re
 import tempfile
@@ -196,6 +197,7 @@ def read(source: Path) -> Extract:
 def _read(source: Path) -> Extract:
     """Runs in a process with limits: how much an extract unpacks to, only its readers know."""
     os.environ["OSMIUM_POOL_THREADS"] = "2"  # each of as many as there are cores would reserve memory
+    gc.disable()  # the process ends with this map: looking for cycles among its nodes takes a tenth of the time
     ways, relations, nodes, tagged, areas, others, water = (_read_json if is_json(_head(source)) else _read_osm)(
         source
     )
