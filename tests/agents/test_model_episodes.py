@@ -15,7 +15,6 @@ from automotive_cosim.interface import trace
 from automotive_cosim.models import ModelReply, make_model
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
 from automotive_cosim.run.estimates import estimates
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.tasking.sets import Suite
 
@@ -37,7 +36,7 @@ class Says:
 
 
 def _run(simulations, agent, folder=None):
-    watchers = [Recorder(EpisodeJob(QUICK), folder, whole=True)] if folder else []
+    watchers = [Recorder(QUICK, folder, whole=True)] if folder else []
     return run_episode(QUICK, agent, watchers, simulations=simulations)
 
 

@@ -8,7 +8,6 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.run.drive import DriveSetup, run_drive
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, run_episode
-from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.traffic.fork import Simulations
 
@@ -26,7 +25,7 @@ WAIT: Json = {"action_type": "wait"}
 def drive_trace(simulations: Simulations) -> str:
     """The trace of waiting on that drive until it is over."""
     setup = DriveSetup("grid_june", 3, agent="silent", settings=DriveSettings(minutes=0.5))
-    row = run_drive(DriveJob(setup).planned(), setup, make_agent("silent"), simulations=simulations).row
+    row = run_drive(setup.planned(), setup, make_agent("silent"), simulations=simulations).row
     assert row.trace_sha256
     return row.trace_sha256
 

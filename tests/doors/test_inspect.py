@@ -18,7 +18,6 @@ from automotive_cosim.interface.observe import ALL
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.report.stats import LEAST_CLUSTERS
 from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
-from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasks import CATALOGUE
@@ -202,7 +201,7 @@ class Seeing(RulePerfect):
 def watched(short: str, simulations: Simulations) -> DriveRecord:
     """The rule-perfect watcher's drive on the command line."""
     setup = DriveSetup(short, 43, agent="rule-perfect")
-    return run_drive(DriveJob(setup).planned(), setup, Seeing(), simulations=simulations)
+    return run_drive(setup.planned(), setup, Seeing(), simulations=simulations)
 
 
 def test_the_rule_perfect_watchers_acts_give_the_command_lines_drive(inspect, short, watched) -> None:

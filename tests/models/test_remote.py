@@ -31,7 +31,6 @@ from automotive_cosim.models.refusal import pause_asked_s, reason, told
 from automotive_cosim.models.remote import BODY_LIMIT_BYTES, HIDDEN_TOKENS, _Endpoint
 from automotive_cosim.replay.make import Touches, provider_body, texts
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
 
@@ -677,7 +676,7 @@ def test_no_key_is_in_the_record_of_an_episode(server, tmp_path):
     server.behaviours = [lambda handler: send(handler, 200, completion(text))]
     agent = ModelAgent(T3A, make_model("local/m"))
     setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", model=agent.model, max_steps=3)
-    result = run_episode(setup, agent, [Recorder(EpisodeJob(setup), tmp_path / "out")])
+    result = run_episode(setup, agent, [Recorder(setup, tmp_path / "out")])
     assert result.steps == 3
     assert result.tokens_in == 7 * len(server.asked)
     files = [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
@@ -721,7 +720,7 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
     name = f"local/some-model?seed=7&format={form}"
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="native", model=name)
     result = run_episode(
-        setup, make_agent("native", name), (Recorder(EpisodeJob(setup), tmp_path / "out"),), simulations=simulations
+        setup, make_agent("native", name), (Recorder(setup, tmp_path / "out"),), simulations=simulations
     )
     assert (result.success, result.model) == (True, name)
     assert (result.tokens_in, result.tokens_out) == (7 * len(said), 3 * len(said))

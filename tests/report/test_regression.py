@@ -152,7 +152,7 @@ def test_what_is_not_judged_any_more_is_worse_and_hides_nowhere(tmp_path):
 
 
 def test_a_pair_with_a_half_that_is_not_judged_is_told_whichever_half_it_is(tmp_path):
-    halves = [number for number, job in enumerate(PLAN.jobs()) if job.pair and job.setup.seed == 0]
+    halves = [number for number, job in enumerate(PLAN.jobs()) if job.pair and job.seed == 0]
     first = write(tmp_path / "a")
     for number in halves:
         pairs = changes(first, write(tmp_path / f"b{number}", errors={number}))[1]
@@ -243,7 +243,7 @@ def scored(folder, points, plan=DRIVES):
 
     empty = score(Judgement((), ()), 600.0)
     with opened(folder, plan.as_json(), DriveTrialRow) as store:
-        for job, value in zip(sorted(plan.jobs(), key=lambda job: job.setup.seed), points, strict=True):
+        for job, value in zip(sorted(plan.jobs(), key=lambda job: job.seed), points, strict=True):
             if value is not None:
                 made = replace(empty, events=1, missed=1, worth=1.0, cost=1.0 - value / 50)
                 assert made.value == pytest.approx(value)

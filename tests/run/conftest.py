@@ -9,7 +9,6 @@ import pytest
 from automotive_cosim.agents import Agent, make_agent
 from automotive_cosim.episode.conditions import TABLE, Conditions
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, run_episode
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
@@ -57,7 +56,7 @@ def run(tmp_path: Path, simulations: Simulations) -> Callable[..., Episode]:
             conditions=Conditions.named(named),
         )
         memory = Memory()
-        watchers = [Recorder(EpisodeJob(setup), tmp_path / out, {}, whole=True), memory]
+        watchers = [Recorder(setup, tmp_path / out, {}, whole=True), memory]
         return Episode(run_episode(setup, player, watchers, simulations=simulations), tmp_path / out, memory)
 
     return run_

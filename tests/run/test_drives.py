@@ -36,7 +36,7 @@ from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup, run_drive
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import DriveJob, EpisodeJob
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.record import Recorder
@@ -103,7 +103,7 @@ def test_tasks_and_drives_are_planned_together_and_apart() -> None:
 def test_a_drive_belongs_to_the_set_of_its_seed() -> None:
     values = {"drives": ["grid_june"], "agents": ["silent"], "seeds": list(range(40))}
     whole, dev, test = (
-        {job.setup.seed for job in make_plan(values | {"split": split}).jobs()} for split in ("both", "dev", "test")
+        {job.seed for job in make_plan(values | {"split": split}).jobs()} for split in ("both", "dev", "test")
     )
     assert dev | test == whole
     assert dev
@@ -264,7 +264,7 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
     assert replayed.exit_code == 0, replayed.output
     assert f"all {row.steps + 1} steps are the same" in replayed.output
     *steps, _ = read_trace(folder, row.id)
-    job = DriveJob(DriveSetup(row.family, row.seed, settings=row.settings, agent=row.agent, model=row.model))
+    job = DriveSetup(row.family, row.seed, settings=row.settings, agent=row.agent, model=row.model)
     quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
     different = compare(steps, played(job, quiet, frozenset(row.channels)).lines[:-1])
     assert "action" in next(step for step in different if step.differs).differs
@@ -292,10 +292,10 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     agent = Slow()
     with (
         closing(Simulations()) as simulations,
-        closing(Recorder(DriveJob(setup), tmp_path / "drive")) as recorder,
+        closing(Recorder(setup, tmp_path / "drive")) as recorder,
         closing(RoadRecorder(tmp_path / "drive", setup.about)) as road_recorder,
     ):
-        job = DriveJob(setup)
+        job = setup
         first = run_drive(job.planned(), setup, agent, simulations=simulations, observers=(recorder, road_recorder))
         channels = frozenset(first.row.channels)
         again = played(job, first.steps, channels, simulations=simulations)
@@ -325,7 +325,7 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
 def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None:
     values = PLAN | {"agents": ["rule-perfect"]}
     jobs = make_plan(values | {"latency_s": [0, 1, 3, 10]}).jobs()
-    assert {job.setup.conditions.latency_s for job in jobs} == {0, 1, 3, 10}
+    assert {job.conditions.latency_s for job in jobs} == {0, 1, 3, 10}
     two = make_plan(values | {"latency_s": [0, 10]})
     assert run_plan(two, tmp_path / "e", executor=Processes(1), retries=0).judged == 2
     rows = read_rows(tmp_path / "e", DriveTrialRow).values()
@@ -406,11 +406,11 @@ def test_intervals_come_from_whole_drives(folder: Path) -> None:
 @pytest.mark.parametrize(("limits", "steps"), [({"drive_steps": 2}, 2), ({"drive_model_s": 9.0}, 100_000)])
 def test_a_drive_has_limits_of_its_own(limits: dict[str, float], steps: int) -> None:
     values = {"drives": ["grid_june"], "tasks": ["hvac_fan_max"], "agents": ["silent"], "limits": limits}
-    drive, episode = sorted(make_plan(values).jobs(), key=lambda job: isinstance(job, EpisodeJob))
+    drive, episode = sorted(make_plan(values).jobs(), key=lambda job: isinstance(job, EpisodeSetup))
     assert drive.limits == episode.limits.of_drives
-    assert episode.setup.max_steps == 20
+    assert episode.max_steps == 20
     assert drive.limits.model_s == limits.get("drive_model_s", 14_400.0)
-    assert drive.setup.max_steps == steps
+    assert drive.max_steps == steps
 
 
 def test_the_rest_of_a_drive_is_unwatched_once_a_limit_is_reached(simulations: Simulations) -> None:
@@ -422,7 +422,7 @@ def test_the_rest_of_a_drive_is_unwatched_once_a_limit_is_reached(simulations: S
         settings = DriveSettings(minutes=0.5)
         setup = DriveSetup("grid_june", 3, settings=settings, max_steps=most_steps, agent="alert-often")
         agent = make_agent("alert-often")
-        record = run_drive(DriveJob(setup).planned(), setup, agent, simulations=simulations, wall_s=wall_s)
+        record = run_drive(setup.planned(), setup, agent, simulations=simulations, wall_s=wall_s)
         row, score = record.row, record.row.score
         assert (row.end, row.unwatched_from_s) == (end, from_s)
         assert score is not None

@@ -27,7 +27,6 @@ from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
@@ -42,7 +41,7 @@ from ..geo.conftest import CAR, CLEAR, NOON
 def collected(simulations):
     """An alert in vain on the grid: the collector and the result."""
     setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "grid", agent="always-alert", model="none")
-    collector = Collector(EpisodeJob(setup))
+    collector = Collector(setup)
     result = run_episode(setup, make_agent("always-alert"), [collector], simulations=simulations)
     assert result.success is False
     return collector, result
