@@ -34,7 +34,7 @@ from automotive_cosim.report.regression import changes
 from automotive_cosim.report.stats import LEAST_CLUSTERS
 from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.coverage import unit_of
-from automotive_cosim.run.drive import DriveSetup, run_drive
+from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.plan import families_named, make_plan
@@ -46,6 +46,7 @@ from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.row import as_json, from_json, steady
 from automotive_cosim.run.store import read_rows, read_trace
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.run.trial_folder import read_steps, read_trial
 from automotive_cosim.traffic.fork import Simulations
 
@@ -266,7 +267,7 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
     *steps, _ = read_trace(folder, row.id)
     job = DriveSetup(row.family, row.seed, settings=row.settings, agent=row.agent, model=row.model)
     quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
-    different = compare(steps, played(job, quiet, frozenset(row.channels)).lines[:-1])
+    different = compare(steps, played(job, quiet, frozenset(row.channels))[1].lines[:-1])
     assert "action" in next(step for step in different if step.differs).differs
     with pytest.raises(UserError, match="no drive in"):
         rerun(folder, "grid_december")
@@ -295,29 +296,27 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
         closing(Recorder(setup, tmp_path / "drive")) as recorder,
         closing(RoadRecorder(tmp_path / "drive", setup.about)) as road_recorder,
     ):
-        job = setup
-        first = run_drive(job.planned(), setup, agent, simulations=simulations, observers=(recorder, road_recorder))
-        channels = frozenset(first.row.channels)
-        again = played(job, first.steps, channels, simulations=simulations)
-    assert len({step["thought_s"] for step in first.steps}) > 2
-    assert not [step for step in compare(first.steps, again.lines[:-1]) if step.differs]
-    assert again.row.trace_sha256 == first.row.trace_sha256
-    assert (again.row.events, again.row.acts, again.row.score) == (
-        first.row.events,
-        first.row.acts,
-        first.row.score,
-    )
+        first = run_trial(setup, agent, (recorder, road_recorder), simulations=simulations)
+        assert isinstance(first, DriveTrialRow)
+        *steps, last = recorder.lines
+        again, kept = played(setup, steps, frozenset(first.channels), simulations=simulations)
+    assert len({step["thought_s"] for step in steps}) > 2
+    assert not [step for step in compare(steps, kept.lines[:-1]) if step.differs]
+    assert isinstance(again, DriveTrialRow)
+    assert again.trace_sha256 == first.trace_sha256
+    assert (again.events, again.acts, again.score) == (first.events, first.acts, first.score)
+    timeline = last["result"]["timeline"]
     lines = list(read_road(tmp_path / "drive" / "road.jsonl.gz"))
     road = [line for line in lines if "at_s" in line]
     assert lines[-1]["baseline"]
-    assert [round(line["at_s"], 1) for line in road] == first.timeline["time_s"][1:]
-    assert [line["speed_kmh"] for line in road] == first.timeline["speed_kmh"][1:]
+    assert [round(line["at_s"], 1) for line in road] == timeline["time_s"][1:]
+    assert [line["speed_kmh"] for line in road] == timeline["speed_kmh"][1:]
     recorded = read_steps(tmp_path / "drive")
     for name in ("step", "action", "thought_s", "feedback", "sha256"):
-        assert [line[name] for line in recorded] == [step[name] for step in first.steps]
+        assert [line[name] for line in recorded] == [step[name] for step in steps]
     told = read_trial(tmp_path / "drive")
-    assert told["row"] == as_json(first.row)
-    assert told["result"] == {"timeline": first.timeline}
+    assert told["row"] == as_json(first)
+    assert told["result"] == {"timeline": timeline}
 
 
 @pytest.mark.sumo
@@ -422,9 +421,11 @@ def test_the_rest_of_a_drive_is_unwatched_once_a_limit_is_reached(simulations: S
         settings = DriveSettings(minutes=0.5)
         setup = DriveSetup("grid_june", 3, settings=settings, max_steps=most_steps, agent="alert-often")
         agent = make_agent("alert-often")
-        record = run_drive(setup.planned(), setup, agent, simulations=simulations, wall_s=wall_s)
-        row, score = record.row, record.row.score
+        recorder = Recorder(setup, None)
+        row = run_trial(setup, agent, (recorder,), simulations=simulations, wall_s=wall_s)
+        assert isinstance(row, DriveTrialRow)
+        score = row.score
         assert (row.end, row.unwatched_from_s) == (end, from_s)
         assert score is not None
         assert score.driven_s == pytest.approx(30.0)
-        assert record.timeline["watched_until_s"] == from_s
+        assert recorder.lines[-1]["result"]["timeline"]["watched_until_s"] == from_s
