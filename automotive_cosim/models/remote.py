@@ -196,7 +196,7 @@ class Remote:
             import httpx2  # noqa: F401, whether it is there
         except ImportError as error:
             raise SetupError(
-                f"the package httpx2 is missing; install it with `{install_hint('models')}`"
+                f"the package httpx2 is missing: {install_hint('models')}"
             ) from error
         self.name = name
         self._model = model
