@@ -57,7 +57,7 @@ def write_report(folder: Path) -> Path:
     found = findings.classes(results)
     made = all_tables(results, found) if results.rows else []
     plots = charts(results.shared()) if results.rows else {}
-    of_drives = drives.tables(results.drives)
+    of_drives = drives.tables(results.drives, folder)
     try:
         with drafted(page := folder / "report.html") as file:
             write_files(folder, (*made, *of_drives), plots.values())
