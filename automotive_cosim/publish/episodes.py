@@ -24,7 +24,7 @@ from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import IN_RESULT, EpisodeSetup, alerts, questioned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.jobs import Trial
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.regrade import judged_again
@@ -71,7 +71,7 @@ ON_TRUST = frozenset(
 """Fields that neither the bundle nor a replay can check."""
 
 
-def check_trial(folder: Path, job: Trial, row: TrialRow) -> tuple[Problem, ...]:
+def check_trial(folder: Path, job: TrialSetup, row: TrialRow) -> tuple[Problem, ...]:
     """Everything that is wrong with a trial.
 
     Args:
@@ -91,7 +91,7 @@ def check_trial(folder: Path, job: Trial, row: TrialRow) -> tuple[Problem, ...]:
         return (Problem(f"traces/{row.id}", "", f"cannot be checked: {why}"),)
 
 
-def _too_large(folder: Path, job: Trial) -> Problem | None:
+def _too_large(folder: Path, job: TrialSetup) -> Problem | None:
     """The first file of a trial that is larger than its plan allows."""
     if not isinstance(job, EpisodeSetup):
         assert isinstance(job, DriveSetup)
@@ -111,7 +111,7 @@ def _too_large(folder: Path, job: Trial) -> Problem | None:
     return None
 
 
-def _problems(folder: Path, job: Trial, row: TrialRow) -> Iterator[Problem]:
+def _problems(folder: Path, job: TrialSetup, row: TrialRow) -> Iterator[Problem]:
     planned = job.planned()
     if type(row) is not type(planned):
         yield Problem(ROWS, row.id, "is of another kind than the plan says")

@@ -14,7 +14,7 @@ from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import Trial
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rerun import compare, played
@@ -42,7 +42,7 @@ RESULT = (
 STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s")
 
 
-def replay(folder: Path, job: Trial, row: TrialRow, simulations: Simulations) -> tuple[Problem, ...]:
+def replay(folder: Path, job: TrialSetup, row: TrialRow, simulations: Simulations) -> tuple[Problem, ...]:
     """What differs, bit for bit, when the actions of a stored trial are replayed.
 
     Raises:
@@ -58,7 +58,7 @@ def replay(folder: Path, job: Trial, row: TrialRow, simulations: Simulations) ->
     return found
 
 
-def _channels(job: Trial, steps: Sequence[Json]) -> list[frozenset[Channel]]:
+def _channels(job: TrialSetup, steps: Sequence[Json]) -> list[frozenset[Channel]]:
     """The channels that its agent may have had; no foreign agent is loaded to find out."""
     if ":" not in job.agent:
         settings = AgentSettings(job.conditions, seed=job.seed)

@@ -22,7 +22,7 @@ from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.trace import digests, plain
 from automotive_cosim.run.answers import Answers
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import NO_MODEL, Limits, Trial
+from automotive_cosim.run.jobs import NO_MODEL, Limits, TrialSetup
 from automotive_cosim.run.moments import JudgeInput
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.sets import Split
@@ -31,7 +31,7 @@ from automotive_cosim.traffic.fork import Simulations
 
 
 @dataclass(frozen=True, kw_only=True)
-class DriveSetup(DriveSpec, Trial):
+class DriveSetup(DriveSpec, TrialSetup):
     """One agent on one drive, by name; the same setup gives the same trace."""
 
     limits: Limits = field(default_factory=lambda: Limits().of_drives)

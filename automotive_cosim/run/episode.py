@@ -23,7 +23,7 @@ from automotive_cosim.run.answers import Answers
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.estimates import PositionEstimate, estimates
 from automotive_cosim.run.harm import drive_figures, overspeed
-from automotive_cosim.run.jobs import Trial
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.load import DriverLoad, driver_load
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.row import as_json
@@ -51,7 +51,7 @@ IN_RESULT = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class EpisodeSetup(EpisodeSpec, Trial):
+class EpisodeSetup(EpisodeSpec, TrialSetup):
     """One agent on one half of a task, by name; the same setup gives the same trace."""
 
     agent: str = "asurada"

@@ -17,7 +17,7 @@ from automotive_cosim.models.base import CHARACTERS_PER_TOKEN
 from automotive_cosim.models.remote import Settings
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import Trial, warm_up_s
+from automotive_cosim.run.jobs import TrialSetup, warm_up_s
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.trial_row import TrialRow
 
@@ -104,7 +104,7 @@ class CostForecast:
         return ""
 
 
-def forecast(jobs: Sequence[Trial], workers: int, rows: Iterable[TrialRow] = ()) -> CostForecast:
+def forecast(jobs: Sequence[TrialSetup], workers: int, rows: Iterable[TrialRow] = ()) -> CostForecast:
     """What the jobs that have not run yet will take.
 
     Args:
@@ -140,7 +140,7 @@ def asks(model: str) -> bool:
     return not model.startswith(("rules", "none", "replay/"))
 
 
-def _seconds(job: Trial) -> float:
+def _seconds(job: TrialSetup) -> float:
     if isinstance(job, DriveSetup):
         return DRIVE_S
     return GRID_EPISODE_S if job.in_scenario == "grid" else EPISODE_S
@@ -158,13 +158,13 @@ def _own(rows: Iterable[TrialRow]) -> dict[Hashable, Tokens]:
     }
 
 
-def pictures_of(job: Trial) -> int:
+def pictures_of(job: TrialSetup) -> int:
     """How many pictures a step's question has, if the model sees any."""
     is_withheld = job.conditions.see in (See.TREE, See.NOTHING)
     return 0 if is_withheld else PICTURED.get(job.agent, int(job.agent not in A_STEP))
 
 
-def _tokens(job: Trial, own: Mapping[Hashable, Tokens]) -> tuple[Range, Range]:
+def _tokens(job: TrialSetup, own: Mapping[Hashable, Tokens]) -> tuple[Range, Range]:
     """What is sent and received in a trial."""
     known = own.get((job.agent, job.model, type(job.planned())))
     low, high = (LEAST, MOST) if known is None else (LEAST_KNOWN, MOST_KNOWN)
@@ -172,7 +172,7 @@ def _tokens(job: Trial, own: Mapping[Hashable, Tokens]) -> tuple[Range, Range]:
     return Range(low * known.sent, high * known.sent), Range(low * known.received, high * known.received)
 
 
-def expected(job: Trial) -> Tokens:
+def expected(job: TrialSetup) -> Tokens:
     """The tokens of a trial before anything is known, with the steps of the reference solution or of a drive."""
     step = A_STEP.get(job.agent, OTHER_STEP)
     sent = _sent(job)
@@ -184,13 +184,13 @@ def expected(job: Trial) -> Tokens:
     return Tokens(steps * (text + pictures * PICTURE), steps * step.received)
 
 
-def longest_question(job: Trial) -> int:
+def longest_question(job: TrialSetup) -> int:
     """Tokens of the longest question in a trial, without its pictures and functions."""
     sent = _sent(job)
     return round(LONGEST * (DRIVE_SHARE * sent if isinstance(job, DriveSetup) else sent))
 
 
-def _sent(job: Trial) -> float:
+def _sent(job: TrialSetup) -> float:
     """Tokens of text that a step of a task sends."""
     agent, prompt = job.agent, job.conditions.prompt
     if agent not in A_STEP:

@@ -106,7 +106,7 @@ class Limits:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trial(Job):
+class TrialSetup(Job):
     """What one agent does once, by name: on a task's half (``EpisodeSetup``) or on a drive (``DriveSetup``).
 
     The same trial gives the same trace.

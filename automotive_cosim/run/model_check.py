@@ -15,7 +15,7 @@ from automotive_cosim.errors import ActionError, ModelError
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN, ChatMessage, ChatModel, ModelReply, ToolCall
 from automotive_cosim.models.local import Local
 from automotive_cosim.run.forecast import asks, longest_question, pictures_of
-from automotive_cosim.run.jobs import Trial
+from automotive_cosim.run.jobs import TrialSetup
 
 FILLER = "The car drives on along the avenue, and nothing has changed since. "
 ASKED = "Answer with the word OK."
@@ -23,7 +23,7 @@ CALLED = "Call the function `wait` once."
 WAIT = ToolCall("call00000", "wait", {"seconds": 1})
 
 
-def misfits(jobs: Iterable[Trial]) -> Iterator[str]:
+def misfits(jobs: Iterable[TrialSetup]) -> Iterator[str]:
     """What each model of some trials does not take of their questions; nothing for those that take them.
 
     Raises:

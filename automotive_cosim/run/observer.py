@@ -50,4 +50,4 @@ class TrialObserver(Observer):
         """The agent has acted."""
 
     def finished(self, row: Any, told: Any) -> None:
-        """The trial is over, or was broken off: its row, and what the end of its trace tells (``Trial.told``)."""
+        """The trial is over, or was broken off: its row, and what else its trace tells (``TrialSetup.told``)."""

@@ -31,7 +31,7 @@ from automotive_cosim.interface.trace import plain
 from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import HUMAN, NO_MODEL, Limits, Trial, digest
+from automotive_cosim.run.jobs import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
 from automotive_cosim.scenarios import open_scenario
@@ -67,7 +67,7 @@ class PlannedTrial:
     settings: DriveSettings = AS_SCRIPTED
     """What is set otherwise than the drive's script has it."""
 
-    def job(self, agent: str, model: str, repeat: int, limits: Limits, spare: tuple[int, ...]) -> Trial:
+    def job(self, agent: str, model: str, repeat: int, limits: Limits, spare: tuple[int, ...]) -> TrialSetup:
         """The trial of one agent.
 
         Raises:
@@ -180,7 +180,7 @@ class Plan(EvaluationSettings):
                     lacks.append(str(error))
         return tuple(dict.fromkeys(sorted(lacks)))
 
-    def jobs(self) -> tuple[Trial, ...]:
+    def jobs(self) -> tuple[TrialSetup, ...]:
         """Every trial, grouped by warm simulation, then by instance, whose contestants stand next to each other:
         wherever a run stops, they can be compared on all that is complete.
 
@@ -287,12 +287,12 @@ class Plan(EvaluationSettings):
                 drive=family, scenario=place, seed=seed, conditions=conditions, settings=self.settings
             )
 
-    def _job(self, agent: str, model: str, trial: PlannedTrial, repeat: int) -> Trial:
+    def _job(self, agent: str, model: str, trial: PlannedTrial, repeat: int) -> TrialSetup:
         job = trial.job(agent, model, repeat, self.limits, self.spare_traffic)
         return replace(job, redrawn=repeat) if self.rephrase and isinstance(job, EpisodeSetup) else job
 
 
-def _place(job: Trial) -> tuple[str, str, str]:
+def _place(job: TrialSetup) -> tuple[str, str, str]:
     return digest(job.simulation), digest(plain(job.instance)), digest(job.id)
 
 

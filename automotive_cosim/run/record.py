@@ -34,7 +34,7 @@ from automotive_cosim.formats.writing import (
 )
 from automotive_cosim.interface.trace import STATES, digests
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import Trial
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.moments import JudgeInput, write_judged
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.row import as_json
@@ -86,7 +86,7 @@ class Recorder(TrialObserver):
     """Keeps the trace of a trial and, if it has a folder, writes it down step by step."""
 
     def __init__(
-        self, trial: Trial, folder: Path | None, arguments: Json | None = None, *, whole: bool = False
+        self, trial: TrialSetup, folder: Path | None, arguments: Json | None = None, *, whole: bool = False
     ) -> None:
         """Nothing is written before the agent takes over.
 

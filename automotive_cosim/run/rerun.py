@@ -34,7 +34,7 @@ from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup, read_setup
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import Trial
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rows import read_trials
@@ -128,7 +128,7 @@ def _single(folder: Path, trial: str) -> list[Compared]:
     return _again(job, stored, channels, row.get("agent_error"))
 
 
-def _job(folder: Path, told: Json) -> Trial:
+def _job(folder: Path, told: Json) -> TrialSetup:
     """What was run, by the folder of a trial."""
     values = (told.get("manifest") or {}).get("setup")
     if values is None:
@@ -142,11 +142,13 @@ def _job(folder: Path, told: Json) -> Trial:
     return replace(setup, scenario="")  # earlier records named a family's own scenario too
 
 
-def _again(job: Trial, stored: Sequence[Json], channels: frozenset[Channel], failure: str | None) -> list[Compared]:
+def _again(
+    job: TrialSetup, stored: Sequence[Json], channels: frozenset[Channel], failure: str | None
+) -> list[Compared]:
     return compare(stored, [line for line in played(job, stored, channels, failure)[1].lines if "step" in line])
 
 
-def _channels(setup: Trial) -> frozenset[Channel]:
+def _channels(setup: TrialSetup) -> frozenset[Channel]:
     """The channels that its agent was given; no model is needed."""
     if setup.agent in PROFILES:
         without = setup.without if isinstance(setup, EpisodeSetup) else ()
@@ -162,7 +164,7 @@ def _channels(setup: Trial) -> frozenset[Channel]:
 
 
 def played(
-    job: Trial,
+    job: TrialSetup,
     stored: Sequence[Json],
     channels: frozenset[Channel],
     failure: str | None = None,

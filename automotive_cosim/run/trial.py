@@ -19,14 +19,14 @@ from automotive_cosim.episode.observer import Observers
 from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.run.answers import Answers
-from automotive_cosim.run.jobs import Trial
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
 
 def run_trial(
-    trial: Trial,
+    trial: TrialSetup,
     agent: Agent,
     observers: Sequence[TrialObserver] = (),
     *,

@@ -14,7 +14,7 @@ from automotive_cosim.formats.writing import beneath
 from automotive_cosim.run.budget import Metered, MeterHandle
 from automotive_cosim.run.executor import Runner, failed_by
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import Limits, Trial
+from automotive_cosim.run.jobs import Limits, TrialSetup
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.record import Recorder
@@ -30,14 +30,14 @@ WARM = 2
 
 
 @contextmanager
-def trials(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[Trial, TrialRow]]:
+def trials(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[TrialSetup, TrialRow]]:
     """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share."""
     with closing(Simulations(count_limit=WARM)) as simulations, closing(ForkServer()) as fork_server:
         yield lambda job, folder: run_job(job, folder, pictures, simulations, fork_server, meter)
 
 
 def run_job(
-    job: Trial,
+    job: TrialSetup,
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
@@ -54,7 +54,7 @@ def run_job(
 
 def run_with(
     agent: AbstractContextManager[Agent],
-    job: Trial,
+    job: TrialSetup,
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
@@ -91,7 +91,7 @@ def run_with(
 
 
 def agent_of(
-    job: Trial, fork_server: ForkServer, meter: MeterHandle | None = None
+    job: TrialSetup, fork_server: ForkServer, meter: MeterHandle | None = None
 ) -> AbstractContextManager[Agent]:
     """The agent of a job; see ``agent_for``."""
     settings = AgentSettings(job.conditions, seed=job.seed, instructions=instructions(job.conditions.prompt))

@@ -32,7 +32,7 @@ from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import HUMAN, NO_MODEL, Trial
+from automotive_cosim.run.jobs import HUMAN, NO_MODEL, TrialSetup
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.record import Recorder, default_folder, stamped_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
@@ -178,7 +178,7 @@ class Game(TrialObserver):
             return
         self.begin(self._drives.drive(family, seed, name), self._drives.folder, self._drives.keep)
 
-    def begin(self, job: Trial, folder: Path, keep: Callable[[Any], None]) -> None:
+    def begin(self, job: TrialSetup, folder: Path, keep: Callable[[Any], None]) -> None:
         """Begins a trial that counts.
 
         Args:
@@ -319,7 +319,7 @@ class Game(TrialObserver):
         except Exception as error:
             self._tell(state=PlayState.FAILED, error=str(error) or type(error).__name__)
 
-    def _practise(self, job: Trial, folder: Path) -> None:
+    def _practise(self, job: TrialSetup, folder: Path) -> None:
         """Plays a trial and records it as ``run`` and ``drive`` do."""
         is_episode = isinstance(job, EpisodeSetup)
         recorder, road = Recorder(job, folder, {}, whole=is_episode), RoadRecorder(folder, job.about)
@@ -334,7 +334,7 @@ class Game(TrialObserver):
                 write_page(folder)
         self._tell(state=PlayState.OVER, folder=folder)
 
-    def _count(self, job: Trial, folder: Path, keep: Callable[[Any], None]) -> None:
+    def _count(self, job: TrialSetup, folder: Path, keep: Callable[[Any], None]) -> None:
         """Plays a trial and keeps its row."""
         assert self._simulations is not None
         row = run_with(nullcontext(self._person), job, folder, Pictures.ALL, self._simulations, (self,))

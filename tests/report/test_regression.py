@@ -66,7 +66,7 @@ def test_a_fall_is_worse_beyond_what_is_allowed_and_named(tmp_path):
     assert episodes.is_worse(share - 0.01)
     assert not episodes.is_worse(share)
     told = markdown(found, 0.0)
-    assert PLAN.jobs()[2].task.id in told.partition("**Lost")[2]
+    assert PLAN.jobs()[2].task in told.partition("**Lost")[2]
     assert "missing: goal" in told
 
 
@@ -133,7 +133,7 @@ def test_the_summary_for_a_terminal_is_narrow_and_says_what_the_markdown_says(tm
     assert markdown(found, 0.0).startswith(f"**{head}**")
     assert max(map(len, lines)) <= 80
     assert f"{len(PLAN.jobs()) - 1}/{len(PLAN.jobs())} before" in lines[1]
-    assert [line for line in lines if PLAN.jobs()[2].task.id in line], "what was lost is named"
+    assert [line for line in lines if PLAN.jobs()[2].task in line], "what was lost is named"
 
 
 def test_an_improvement_is_not_worse(tmp_path):
