@@ -137,8 +137,8 @@ class FailureRule:
     drive_value_below: Annotated[float, Le(100)] | None = None
     """A drive fails if its value is below this; None: if an event was not met in time or an act was a nuisance."""
     events: tuple[str, ...] = ()
-    """Kinds of events that count, and nuisances only where they outnumber the right acts while something is due: such
-    events were met by chance. Empty for all of both."""
+    """Kinds of events that count, and nuisances only where they outnumber the right acts while something is due:
+    such events were met by chance. Empty for all of both."""
     ttc_below_s: Annotated[float, Ge(0)] | None = None
     """Fails too if the time to collision with the vehicle in front was ever below this."""
 

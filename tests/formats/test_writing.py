@@ -305,14 +305,18 @@ def test_a_folder_appears_whole_or_not_at_all(tmp_path):
 def test_an_error_names_the_folder_that_was_asked_for_and_not_where_it_is_made(tmp_path, name):
     out = tmp_path / "out"
     asked = out / name.removeprefix("new/") if name.startswith("new/") else out
-    with pytest.raises(OSError, match="full") as caught, appearing(out) as folder:
-        hidden = os.path.normpath(folder.parent / name)
-        raise OSError(errno.ENOSPC, "full", hidden)
+
+    def fails(error):
+        with appearing(out) as folder:
+            raise error(folder)
+
+    with pytest.raises(OSError, match="full") as caught:
+        fails(lambda folder: OSError(errno.ENOSPC, "full", os.path.normpath(folder.parent / name)))
     assert caught.value.filename == str(asked)
-    with pytest.raises(UserError, match=re.escape(f"{out}/a line 3")), appearing(out) as folder:
-        raise UserError(f"{folder}/a line 3: no")
-    with pytest.raises(OSError, match="full") as other, appearing(out):
-        raise OSError(errno.ENOSPC, "full", "elsewhere")
+    with pytest.raises(UserError, match=re.escape(f"{out}/a line 3")):
+        fails(lambda folder: UserError(f"{folder}/a line 3: no"))
+    with pytest.raises(OSError, match="full") as other:
+        fails(lambda _: OSError(errno.ENOSPC, "full", "elsewhere"))
     assert other.value.filename == "elsewhere"
 
 
