@@ -154,7 +154,9 @@ def _count(rows: Sequence[EpisodeRow]) -> str:
         if each:
             beside = not_judged(sum(row.success is None and row.has_run for row in each), _waiting(each))
             won = sum(row.has_succeeded for row in each)
-            counts.append(f"{won} of {counted(len(each) - _waiting(each), unit)}" + (f" ({beside})" if beside else ""))
+            counts.append(
+                f"{won} of {counted(len(each) - _waiting(each), unit)}" + (f" ({beside})" if beside else "")
+            )
     return ", ".join(counts)
 
 
