@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.geometry import Rect
@@ -15,6 +15,24 @@ from automotive_cosim.cockpit.signals import HMI, Signal, Signals
 from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.timer import Timer
+from automotive_cosim.cockpit.values import (  # noqa: F401
+    MILE_KM as MILE_KM,
+    distance as distance,
+    minutes as minutes,
+    pressure as pressure,
+    sign_figure as sign_figure,
+    sign_in_words as sign_in_words,
+    speed as speed,
+    speed_unit as speed_unit,
+    temperature as temperature,
+)
+from automotive_cosim.cockpit.controls import (
+    StepWords as StepWords,
+    forward_back as forward_back,
+    left_right as left_right,
+    lower_higher as lower_higher,
+    upright_back as upright_back,
+)
 from automotive_cosim.cockpit.widgets import (
     Bar,
     Button,
@@ -33,7 +51,6 @@ from automotive_cosim.contracts.text import Quantity, joined, listed, say
 
 HELD_STEPS = 5
 """Steps for one long press on plus or minus."""
-MILE_KM, PSI_KPA = 1.609344, 6.894757
 
 
 def content(state: State) -> Rect:
@@ -41,122 +58,12 @@ def content(state: State) -> Rect:
     return state.size.content(pages()[state.screen].room)
 
 
-def temperature(signals: Signals, celsius: float, digits: int = 1) -> str:
-    """A value in the unit of the display."""
-    if signals[HMI.TEMPERATURE_UNIT] == "F":
-        return f"{celsius * 1.8 + 32:.0f} °F"
-    return Quantity(f"{celsius:.{digits}f} °C".replace("-0 ", "0 ").replace("-0.0", "0.0"))
-
-
-def speed(signals: Signals, kmh: float) -> str:
-    """The number alone, in the unit of the display."""
-    return f"{kmh / MILE_KM if signals[HMI.DISTANCE_UNIT] == 'MILES' else kmh:.0f}"
-
-
-def speed_unit(signals: Signals) -> str:
-    """Unit of ``speed``."""
-    return "mph" if signals[HMI.DISTANCE_UNIT] == "MILES" else "km/h"
-
-
-def sign_figure(kmh: float, unit: str) -> str:
-    """The figure on a limit sign, in the unit of the signs there, whatever the display shows."""
-    return f"{kmh / MILE_KM if unit == 'mph' else kmh:.0f}"
-
-
-def sign_in_words(signals: Signals, kmh: float, unit: str) -> str:
-    """The figure on a limit sign; with its unit where that is not the display's."""
-    figure = sign_figure(kmh, unit)
-    return figure if unit == speed_unit(signals) else f"{figure} {unit}"
-
-
-def distance(signals: Signals, metres: float) -> str:
-    """A distance, rounded as on signs."""
-    if signals[HMI.DISTANCE_UNIT] == "MILES":
-        miles = metres / 1000 / MILE_KM
-        return Quantity(f"{miles:.1f} mi") if miles < 100 else f"{miles:.0f} mi"
-    if metres < 1000:
-        return f"{round(metres, -1):.0f} m"
-    return Quantity(f"{metres / 1000:.1f} km") if metres < 100_000 else f"{metres / 1000:.0f} km"
-
-
-def pressure(signals: Signals, kpa: float) -> str:
-    """A value in the unit of the display."""
-    unit = signals[HMI.PRESSURE_UNIT]
-    if unit == "PSI":
-        return f"{kpa / PSI_KPA:.0f} psi"
-    return Quantity(f"{kpa / 100:.1f} bar") if unit == "BAR" else f"{kpa:.0f} kPa"
-
-
-def minutes(seconds: float) -> str:
-    """Minutes and seconds."""
-    whole = int(seconds)
-    if whole >= 3600:
-        return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
-    return f"{whole // 60}:{whole % 60:02d}"
-
-
 def heading(rect: Rect, text: str, key: str = "") -> Label:
     """The title of a card."""
     return Label(rect=rect, key=key, text=text, style=Type.LABEL, tone="muted")
 
 
-@dataclass(frozen=True, slots=True)
-class StepWords:
-    """What minus and plus do, why they do nothing at the ends, and how they look."""
-
-    less: str
-    more: str
-    least: str
-    most: str
-    icons: tuple[Icon, Icon] = (Icon.MINUS, Icon.PLUS)
-    more_first: bool = False
-    """Whether plus is on the left, where it leads."""
-
-
 StepWays = Callable[[str, str], StepWords]
-"""From a name and a step."""
-
-
-def lower_higher(name: str, by: str) -> StepWords:
-    """For what has more or less."""
-    return StepWords(
-        say("{name} lower by {step}", name=name, step=by),
-        say("{name} higher by {step}", name=name, step=by),
-        say("It is at its lowest"),
-        say("It is at its highest"),
-    )
-
-
-def forward_back(name: str, by: str) -> StepWords:
-    """For a seat, whose position counts from the front."""
-    return StepWords(
-        say("{name} forward by {step}", name=name, step=by),
-        say("{name} back by {step}", name=name, step=by),
-        say("It is as far forward as it goes"),
-        say("It is as far back as it goes"),
-    )
-
-
-def upright_back(name: str, by: str) -> StepWords:
-    """For a backrest, whose angle counts from upright."""
-    return StepWords(
-        say("{name} more upright by {step}", name=name, step=by),
-        say("{name} further back by {step}", name=name, step=by),
-        say("It is as upright as it goes"),
-        say("It is as far back as it goes"),
-    )
-
-
-def left_right(name: str, by: str) -> StepWords:
-    """For a mirror, whose angle counts to the left (VSS, ``Vehicle.Body.Mirrors.DriverSide.Pan``)."""
-    return StepWords(
-        say("{name} to the right by {step}", name=name, step=by),
-        say("{name} to the left by {step}", name=name, step=by),
-        say("It is as far to the right as it goes"),
-        say("It is as far to the left as it goes"),
-        (Icon.TO_THE_RIGHT, Icon.TO_THE_LEFT),
-        more_first=True,
-    )
 
 
 def stepper(
