@@ -6,12 +6,11 @@ A control is named by its signal alone (``controls``); where a screen has anothe
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.controls import CHOICES, CONTROLS, shown
-from automotive_cosim.cockpit.flow import LINE, Flow, at, card, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import Flow, at, card, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, Focus, Show

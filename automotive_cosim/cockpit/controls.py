@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from automotive_cosim.cockpit.values import speed, speed_unit, temperature
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
@@ -29,6 +28,7 @@ from automotive_cosim.cockpit.signals import (
     Signals,
 )
 from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.cockpit.values import speed, speed_unit, temperature
 from automotive_cosim.contracts.text import Quantity, say, say_in
 
 

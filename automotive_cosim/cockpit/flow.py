@@ -96,14 +96,15 @@ def pages(*items: Item) -> Flow:
     return Flow(parts, lambda rect: panes(rect, *sizes))
 
 
-def grid(columns: int, gap: int, *parts: Part | None) -> Flow:
-    """Cells of one size, line by line, as far apart across as down."""
+def grid(columns: int, gap: int | tuple[int, int], *parts: Part | None) -> Flow:
+    """Cells of one size, line by line; ``gap`` is between them, or across and down."""
+    across, down = gap if isinstance(gap, tuple) else (gap, gap)
     lines = -(-len(parts) // columns)
     highest = _highest(parts)
     return Flow(
         parts,
-        lambda rect: [cell for one in rect.rows(lines, gap) for cell in one.columns(columns, gap)],
-        highest if highest is None else lines * (highest + gap) - gap,
+        lambda rect: [cell for one in rect.rows(lines, down) for cell in one.columns(columns, across)],
+        highest if highest is None else lines * (highest + down) - down,
     )
 
 

@@ -6,6 +6,21 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from automotive_cosim.cockpit.commands import Put, Set
+from automotive_cosim.cockpit.controls import (
+    StepWords as StepWords,
+)
+from automotive_cosim.cockpit.controls import (
+    forward_back as forward_back,
+)
+from automotive_cosim.cockpit.controls import (
+    left_right as left_right,
+)
+from automotive_cosim.cockpit.controls import (
+    lower_higher as lower_higher,
+)
+from automotive_cosim.cockpit.controls import (
+    upright_back as upright_back,
+)
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, Focus, Show
@@ -15,23 +30,32 @@ from automotive_cosim.cockpit.signals import HMI, Signal, Signals
 from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.timer import Timer
-from automotive_cosim.cockpit.values import (  # noqa: F401
+from automotive_cosim.cockpit.values import (
     MILE_KM as MILE_KM,
-    distance as distance,
-    minutes as minutes,
-    pressure as pressure,
-    sign_figure as sign_figure,
-    sign_in_words as sign_in_words,
-    speed as speed,
-    speed_unit as speed_unit,
-    temperature as temperature,
 )
-from automotive_cosim.cockpit.controls import (
-    StepWords as StepWords,
-    forward_back as forward_back,
-    left_right as left_right,
-    lower_higher as lower_higher,
-    upright_back as upright_back,
+from automotive_cosim.cockpit.values import (
+    distance as distance,
+)
+from automotive_cosim.cockpit.values import (
+    minutes as minutes,
+)
+from automotive_cosim.cockpit.values import (
+    pressure as pressure,
+)
+from automotive_cosim.cockpit.values import (
+    sign_figure as sign_figure,
+)
+from automotive_cosim.cockpit.values import (
+    sign_in_words as sign_in_words,
+)
+from automotive_cosim.cockpit.values import (
+    speed as speed,
+)
+from automotive_cosim.cockpit.values import (
+    speed_unit as speed_unit,
+)
+from automotive_cosim.cockpit.values import (
+    temperature as temperature,
 )
 from automotive_cosim.cockpit.widgets import (
     Bar,
