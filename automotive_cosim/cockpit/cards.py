@@ -313,8 +313,8 @@ def rows(
     height: int = 64,
     gap: int = 8,
 ) -> Callable[[Rect], Rows]:
-    """A scrolling list or grid, cut at whole rows; while driving it ends early. The rightmost 16 pixels of its box are
-    left to the scroll bar.
+    """A scrolling list or grid, cut at whole rows; while driving it ends early. The rightmost 16 pixels of its box
+    are left to the scroll bar.
 
     Args:
         key: its own, under which the state remembers how far it is scrolled.

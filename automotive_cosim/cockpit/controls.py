@@ -1,7 +1,7 @@
 """The car's controls: what each is called, where its signal is commanded, once for all screens.
 
-Range, unit and step stand in ``signals``, why a control is locked while driving in ``vehicle.HELD``. A screen that has
-no room for a name gives its own.
+Range, unit and step stand in ``signals``, why a control is locked while driving in ``vehicle.HELD``. A screen that
+has no room for a name gives its own.
 """
 
 from __future__ import annotations

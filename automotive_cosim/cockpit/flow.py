@@ -2,9 +2,9 @@
 
     card(title(Icon.VOLUME, say("Volume")), 20, slider(MEDIA.VOLUME, state), REST, switch(MEDIA.MUTED, state))
 
-Widgets are made without their boxes; ``fill`` gives a box to each. Between them, a number is a gap, ``REST`` one that
-takes what the others leave. ``(92, part)`` is a part with another height than its own, or in a ``line`` its width, and
-``(REST, part)`` one that takes what is left.
+Widgets are made without their boxes; ``fill`` gives a box to each. Between them, a number is a gap, and ``REST`` one
+that takes what the others leave. ``(92, part)`` is a part with another height than its own, or in a ``line`` its
+width, and ``(REST, part)`` one that takes what is left.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from automotive_cosim.cockpit.theme import Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Slider, Tile, Widget
 
 HEIGHTS = {Tile: 60, Slider: 84, Button: 72}
-"""Natural heights in logical pixels; a label of the style ``LABEL`` has that of ``LINE``, others take what is left."""
+"""Natural heights in logical pixels; a label in ``Type.LABEL`` is as high as ``LINE``, others take what is left."""
 LINE = 28
 PADDING = 28, 24
 """Between the edge of a large card and what is in it."""
