@@ -368,10 +368,15 @@ def menu(key: str, entries: Iterable[tuple[str, str, Icon]], state: State) -> Fl
     return card((64 * len(lines) - 8, grid(1, 8, *lines)), padding=(12, 12))
 
 
-def gone(screen: str, words: str) -> Flow:
+def back(screen: str) -> Button:
+    """A button that leads back, with its name."""
+    return Button(key=f"{screen}.back", text=say("Back"), icon=Icon.BACK, on_tap=Back())
+
+
+def gone(state: State, screen: str, words: str) -> tuple[Widget, ...]:
     """The page of what was removed."""
-    back = Button(key=f"{screen}.back", text=say("Back"), icon=Icon.BACK, on_tap=Back())
-    return stack((REST, note(f"{screen}.gone", words)), grid(3, 16, back, None, None))
+    page = stack((REST, note(f"{screen}.gone", words)), (72, grid(3, 16, back(screen), None, None)))
+    return fill(content(state).inset(28, 20), page)
 
 
 def picked_at(state: State, screen: str, names: Sequence[str]) -> int | None:

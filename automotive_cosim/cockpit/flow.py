@@ -2,9 +2,9 @@
 
     card(title(Icon.VOLUME, say("Volume")), 20, slider(MEDIA.VOLUME, state), REST, switch(MEDIA.MUTED, state))
 
-Widgets are made without their boxes; ``fill`` gives a box to each. Between them, a number is a gap, and ``REST`` one
-that takes what the others leave. ``(92, part)`` is a part with another height than its own, or in a ``line`` its
-width, and ``(REST, part)`` one that takes what is left.
+Widgets are made without their boxes; ``fill`` gives a box to each. Between them, a number is a gap, and ``REST``
+one that takes what the others leave. ``(92, part)`` is a part with another height than its own, or in a ``line``
+its width, and ``(REST, part)`` one that takes what is left.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def line(*items: Item) -> Flow:
     return Flow(parts, lambda rect: row(rect, *sizes), _highest(parts))
 
 
-def pages(*items: Item) -> Flow:
+def panels(*items: Item) -> Flow:
     """Side by side, a gap apart; one above the other where the box is taller than wide (``layout.panes``)."""
     parts, sizes = _sized(items, lambda part: REST)
     return Flow(parts, lambda rect: panes(rect, *sizes))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage
 from automotive_cosim.cockpit.cards import SMALL, content, heading, slider, switch
-from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, pages, stack
+from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat, seated
@@ -41,7 +41,7 @@ def cabin(state: State) -> tuple[Widget, ...]:
     tiles = grid(2, 12, switch(SEAT.BELT_REMINDER, state), switch(SEAT.PASSENGER_AIRBAG, state))
     for_them = card((REST, grid(1, 10, tiles, slider(HMI.REAR_SCREEN, state))), padding=(20, 14))
     right = stack((308, _forecast(state)), GAP, (REST, for_them))
-    return fill(content(state), pages((PLAN_WIDTH, _plan(state)), right))
+    return fill(content(state), panels((PLAN_WIDTH, _plan(state)), right))
 
 
 def _plan(state: State) -> Flow:

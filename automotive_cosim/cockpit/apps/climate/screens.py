@@ -21,7 +21,7 @@ from automotive_cosim.cockpit.cards import (
 )
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.controls import CONTROLS, shown
-from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, pages, stack
+from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, panes
 from automotive_cosim.cockpit.messages import Show
@@ -166,7 +166,7 @@ def glass_words(fog: float, film: float) -> tuple[Text, Text]:
 
 def comfort(state: State) -> tuple[Widget, ...]:
     """Rear seats and the climate schedule."""
-    return fill(content(state), pages(_rear(state), _schedule(state)))
+    return fill(content(state), panels(_rear(state), _schedule(state)))
 
 
 def _rear(state: State) -> Flow:

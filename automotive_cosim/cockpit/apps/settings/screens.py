@@ -20,7 +20,7 @@ from automotive_cosim.cockpit.cards import (
     title,
 )
 from automotive_cosim.cockpit.commands import Put, Set, SetAll
-from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, pages, stack
+from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import HMI, LINK, MEDIA, VOICE
@@ -41,7 +41,7 @@ LANGUAGES = {"en": "English", "fr": "Français", "de": "Deutsch", "ja": "日本�
 
 
 def _page(state: State, *cards: Flow) -> tuple[Widget, ...]:
-    return fill(content(state), line((264, menu("settings.page", PAGES, state)), GAP, pages(*cards)))
+    return fill(content(state), line((264, menu("settings.page", PAGES, state)), GAP, panels(*cards)))
 
 
 def settings(state: State) -> tuple[Widget, ...]:

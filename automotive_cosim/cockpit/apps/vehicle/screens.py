@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.apps.vehicle.commands import Wash
 from automotive_cosim.cockpit.cards import SMALL, choice, choices, content, heading, levels, stepper, switch
-from automotive_cosim.cockpit.flow import Flow, Item, at, card, fill, framed, grid, line, pages, stack
+from automotive_cosim.cockpit.flow import Flow, Item, at, card, fill, framed, grid, line, panels, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, LIGHTS
@@ -31,7 +31,7 @@ def page(state: State, *items: Item) -> tuple[Widget, ...]:
     tabs = choices(
         "vehicle.tab", ((name, text, icon, state.screen == to, Show(to)) for name, text, icon, to in TABS)
     )
-    return fill(content(state), pages((CAR_WIDTH, _car(state)), stack((64, tabs), GAP, *items)))
+    return fill(content(state), panels((CAR_WIDTH, _car(state)), stack((64, tabs), GAP, *items)))
 
 
 def vehicle(state: State) -> tuple[Widget, ...]:
