@@ -21,8 +21,8 @@ MEDIA = ("media", "playlist")
 def companion(rect: Rect, state: State) -> tuple[Widget, ...]:
     """The map over a card; a tap leads to the app."""
     view, _, card = column(rect, REST, GAP, 132)
-    below = drive_card(card, state) if state.screen in MEDIA else media_card(card, state)
-    return _map(view, state), below
+    below = drive_card(state) if state.screen in MEDIA else media_card(state)
+    return _map(view, state), *fill(card, below)
 
 
 def _map(rect: Rect, state: State) -> Widget:
