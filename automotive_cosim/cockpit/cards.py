@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.controls import CHOICES, CONTROLS, shown
-from automotive_cosim.cockpit.flow import Flow, at, card, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, at, card, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, Focus, Show
@@ -57,7 +57,7 @@ def heading(text: str, key: str = "") -> Label:
     return Label(key=key, text=text, style=Type.LABEL, tone="muted")
 
 
-def title(icon: Icon, text: str, key: str = "") -> Flow:
+def title(icon: Icon, text: str, key: str = "") -> Block:
     """The head of a page: an icon and its name."""
     picture = Glyph(icon=icon, size=28, tone="accent")
     return framed(line((32, picture), 12, Label(key=key, text=text, style=Type.TITLE)), height=40, look="none")
@@ -68,14 +68,14 @@ def about(key: str, text: str, lines: int = 2) -> Label:
     return Label(key=key, text=text, style=Type.CAPTION, tone="muted", lines=lines)
 
 
-def note(key: str, text: str) -> Flow:
+def note(key: str, text: str) -> Block:
     """The text of an empty list."""
     return at(lambda rect: rect.top(60), Label(key=key, text=text, tone="muted", style=Type.LABEL, align="centre"))
 
 
-def fact(key: str, name: str, value: str) -> Flow:
+def fact(key: str, name: str, value: str) -> Block:
     """A line with a name and a value."""
-    return Flow(
+    return Block(
         (
             Label(text=name, style=Type.LABEL, tone="muted"),
             Label(key=key, text=value, description=name, style=Type.LABEL, align="right"),
@@ -179,7 +179,7 @@ def slider(
 
 def choices(
     key: str, options: Iterable[tuple[str, str, Icon | None, bool, Message]], *, stacked: bool = False
-) -> Flow:
+) -> Block:
     """A row of options of which one is selected; each (key, text, icon, selected, message)."""
     cells = [
         Choice(key=f"{key}.{name}", text=text, icon=icon, selected=selected, on_tap=message, stacked=stacked)
@@ -188,7 +188,7 @@ def choices(
     return framed(grid(len(cells), 4, *cells), (4, 4), look="raised")
 
 
-def choice(signal: Signal[str], state: State) -> Flow:
+def choice(signal: Signal[str], state: State) -> Block:
     """A row of the values of a signal."""
     key, values = CHOICES[signal]
     now = state.signals[signal]
@@ -206,7 +206,7 @@ def stepper(
     style: Type = Type.TITLE,
     locked: str = "",
     gauge: bool = False,
-) -> Flow:
+) -> Block:
     """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once.
 
     Args:
@@ -253,7 +253,7 @@ def stepper(
         left, middle, right = row(rect, side, REST, side)
         return left.middle(side, side), middle, middle.inset(28, 0).bottom_part(4), right.middle(side, side)
 
-    return Flow((button(words.more_first), number, bar, button(not words.more_first)), divide, 64)
+    return Block((button(words.more_first), number, bar, button(not words.more_first)), divide, 64)
 
 
 def _step(signal: Signal[float], signals: Signals) -> str:
@@ -265,7 +265,7 @@ def _step(signal: Signal[float], signals: Signals) -> str:
     return Quantity(f"{signal.step:g}")
 
 
-def time_setter(key: str, timer: Timer, put: Callable[[Timer], Put]) -> Flow:
+def time_setter(key: str, timer: Timer, put: Callable[[Timer], Put]) -> Block:
     """A time of day, earlier and later by half an hour; ``put`` keeps the one that was set."""
 
     def step(name: str, words: str, icon: Icon, by_min: int) -> Button:
@@ -359,7 +359,7 @@ def _rest(key: str, state: State) -> Row:
     )
 
 
-def menu(key: str, entries: Iterable[tuple[str, str, Icon]], state: State) -> Flow:
+def menu(key: str, entries: Iterable[tuple[str, str, Icon]], state: State) -> Block:
     """The pages of an app, one above the other; each (screen, text, icon)."""
     lines = [
         Row(key=f"{key}.{screen}", text=text, icon=icon, selected=state.screen == screen, on_tap=Show(screen))

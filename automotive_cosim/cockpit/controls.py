@@ -246,9 +246,9 @@ CONTROLS: Mapping[Signal[Any], Control] = {
 }
 """By signal: switches and numbers."""
 
-Option = tuple[str, str, Icon | None]
+NamedValue = tuple[str, str, Icon | None]
 """Key, name and icon of one of several values."""
-_WIPING: Mapping[str, Option] = {
+_WIPING: Mapping[str, NamedValue] = {
     "OFF": ("off", say("Off"), None),
     "RAIN_SENSOR": ("auto", say("Auto"), None),
     "INTERVAL": ("interval", say("Interval"), None),
@@ -256,7 +256,7 @@ _WIPING: Mapping[str, Option] = {
     "MEDIUM": ("medium", say("Medium"), None),
     "FAST": ("fast", say("Fast"), None),
 }
-CHOICES: Mapping[Signal[str], tuple[str, Mapping[str, Option]]] = {
+CHOICES: Mapping[Signal[str], tuple[str, Mapping[str, NamedValue]]] = {
     HVAC.AIR_DISTRIBUTION: (
         "hvac.air",
         {

@@ -27,10 +27,10 @@ PADDING = 28, 24
 
 
 @dataclass(slots=True)
-class Flow:
+class Block:
     """Parts, and how a box is divided among them; they need not have a box of their own in the tree."""
 
-    parts: tuple[Part | None, ...]
+    parts: tuple[BlockPart | None, ...]
     """None where a box stays empty."""
     divide: Callable[[Rect], Iterable[Rect]]
     height: LayoutPart = REST
@@ -39,22 +39,22 @@ class Flow:
     """The card around them, which has the whole box."""
 
 
-Part = Widget | Flow | Callable[[Rect], Widget]
+BlockPart = Widget | Block | Callable[[Rect], Widget]
 """A widget without its box, several of them, or what makes one for its box."""
-Item = Part | int | None | tuple[LayoutPart, Part]
+BlockItem = BlockPart | int | None | tuple[LayoutPart, BlockPart]
 """A part, a gap, or a part with a size."""
 
 
-def fill(rect: Rect, *parts: Part | None) -> tuple[Widget, ...]:
+def fill(rect: Rect, *parts: BlockPart | None) -> tuple[Widget, ...]:
     """The widgets of the parts, each of which has the whole box."""
     return tuple(widget for part in parts for widget in _placed(part, rect))
 
 
-def _placed(part: Part | None, rect: Rect) -> Iterator[Widget]:
+def _placed(part: BlockPart | None, rect: Rect) -> Iterator[Widget]:
     if isinstance(part, Widget):
         object.__setattr__(part, "rect", rect)
         yield part
-    elif isinstance(part, Flow):
+    elif isinstance(part, Block):
         inner = [
             widget for one, box in zip(part.parts, part.divide(rect), strict=False) for widget in _placed(one, box)
         ]
@@ -68,77 +68,77 @@ def _placed(part: Part | None, rect: Rect) -> Iterator[Widget]:
         yield part(rect)
 
 
-def natural(part: Part | None) -> LayoutPart:
+def natural(part: BlockPart | None) -> LayoutPart:
     """The height of a part that is not told another."""
-    if isinstance(part, Flow):
+    if isinstance(part, Block):
         return part.height
     if isinstance(part, Label):
         return LINE if part.style is Type.LABEL and part.lines == 1 else REST
     return HEIGHTS.get(type(part)) if isinstance(part, Widget) else REST
 
 
-def stack(*items: Item) -> Flow:
+def stack(*items: BlockItem) -> Block:
     """One above the other."""
     parts, sizes = _sized(items, natural)
     known = [size for size in sizes if size is not None]
-    return Flow(parts, lambda rect: column(rect, *sizes), sum(known) if len(known) == len(sizes) else REST)
+    return Block(parts, lambda rect: column(rect, *sizes), sum(known) if len(known) == len(sizes) else REST)
 
 
-def line(*items: Item) -> Flow:
+def line(*items: BlockItem) -> Block:
     """Side by side; as high as the highest."""
     parts, sizes = _sized(items, lambda part: REST)
-    return Flow(parts, lambda rect: row(rect, *sizes), _highest(parts))
+    return Block(parts, lambda rect: row(rect, *sizes), _highest(parts))
 
 
-def panels(*items: Item) -> Flow:
+def panels(*items: BlockItem) -> Block:
     """Side by side, a gap apart; one above the other where the box is taller than wide (``layout.panes``)."""
     parts, sizes = _sized(items, lambda part: REST)
-    return Flow(parts, lambda rect: panes(rect, *sizes))
+    return Block(parts, lambda rect: panes(rect, *sizes))
 
 
-def grid(columns: int, gap: int | tuple[int, int], *parts: Part | None) -> Flow:
+def grid(columns: int, gap: int | tuple[int, int], *parts: BlockPart | None) -> Block:
     """Cells of one size, line by line; ``gap`` is between them, or across and down."""
     across, down = gap if isinstance(gap, tuple) else (gap, gap)
     lines = -(-len(parts) // columns)
     highest = _highest(parts)
-    return Flow(
+    return Block(
         parts,
         lambda rect: [cell for one in rect.rows(lines, down) for cell in one.columns(columns, across)],
         highest if highest is None else lines * (highest + down) - down,
     )
 
 
-def at(shape: Callable[[Rect], Rect], *parts: Part) -> Flow:
+def at(shape: Callable[[Rect], Rect], *parts: BlockPart) -> Block:
     """Parts in a box that is derived from theirs: ``at(lambda box: box.middle(88, 64), button)``."""
-    return Flow(parts, lambda rect: [shape(rect)] * len(parts))
+    return Block(parts, lambda rect: [shape(rect)] * len(parts))
 
 
-def card(*items: Item, padding: tuple[int, int] = PADDING, height: LayoutPart = REST, **options: Any) -> Flow:
+def card(*items: BlockItem, padding: tuple[int, int] = PADDING, height: LayoutPart = REST, **options: Any) -> Block:
     """A stack on a card; ``options`` are fields of ``Card``."""
     inner = stack(*items)
     return framed(inner, padding, height, **options)
 
 
-def framed(inner: Part, padding: tuple[int, int] = (0, 0), height: LayoutPart = REST, **options: Any) -> Flow:
+def framed(inner: BlockPart, padding: tuple[int, int] = (0, 0), height: LayoutPart = REST, **options: Any) -> Block:
     """A card around a part."""
     across, down = padding
-    return Flow((inner,), partial(_inset, across, down), height, Card(**options))
+    return Block((inner,), partial(_inset, across, down), height, Card(**options))
 
 
 def _inset(across: int, down: int, rect: Rect) -> tuple[Rect]:
     return (rect.inset(across, down),)
 
 
-def _highest(parts: Iterable[Part | None]) -> LayoutPart:
+def _highest(parts: Iterable[BlockPart | None]) -> LayoutPart:
     heights = [natural(part) for part in parts if part is not None]
     known = [height for height in heights if height is not None]
     return max(known) if known and len(known) == len(heights) else REST
 
 
 def _sized(
-    items: Iterable[Item], size_of: Callable[[Part], LayoutPart]
-) -> tuple[tuple[Part | None, ...], tuple[LayoutPart, ...]]:
-    parts, sizes = list[Part | None](), list[LayoutPart]()
+    items: Iterable[BlockItem], size_of: Callable[[BlockPart], LayoutPart]
+) -> tuple[tuple[BlockPart | None, ...], tuple[LayoutPart, ...]]:
+    parts, sizes = list[BlockPart | None](), list[LayoutPart]()
     for item in items:
         if item is None or isinstance(item, int):
             parts.append(None)

@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.apps.settings.state import wifi
 from automotive_cosim.cockpit.cards import stepper
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.controls import CONTROLS
-from automotive_cosim.cockpit.flow import Flow, fill
+from automotive_cosim.cockpit.flow import Block, fill
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
@@ -340,7 +340,7 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
     )
     left, front, rear, right = (each.inset(0, 22) for each in (left, front, rear, right))
 
-    def warmth(signal: Signal[float], who: str) -> Flow:
+    def warmth(signal: Signal[float], who: str) -> Block:
         return stepper(signal, signals, key=f"dock.{who}_temperature", style=Type.LABEL)
 
     def quick(signal: Signal[bool], where: str, name: str) -> Tile:

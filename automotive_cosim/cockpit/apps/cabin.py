@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage
 from automotive_cosim.cockpit.cards import SMALL, content, heading, slider, switch
-from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, panels, stack
+from automotive_cosim.cockpit.flow import Block, at, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat, seated
@@ -44,7 +44,7 @@ def cabin(state: State) -> tuple[Widget, ...]:
     return fill(content(state), panels((PLAN_WIDTH, _plan(state)), right))
 
 
-def _plan(state: State) -> Flow:
+def _plan(state: State) -> Block:
     """The front seats above, the rear bench below, as seen by who sits in them."""
     aboard = {one.seat: one for one in seated(state.signals)}
     front, rear = (
@@ -54,7 +54,7 @@ def _plan(state: State) -> Flow:
     return card((30, heading(say("Who is aboard"))), 6, (REST, seats), padding=SMALL)
 
 
-def _seat(seat: Seat, one: Occupant | None) -> Flow:
+def _seat(seat: Seat, one: Occupant | None) -> Block:
     key, name = f"cabin.{seat}", heading(SEATS[seat])
     if one is None:
         empty = Label(key=key, text=say("Empty"), description=SEATS[seat], tone="muted")
@@ -76,7 +76,7 @@ def _seat(seat: Seat, one: Occupant | None) -> Flow:
     )
 
 
-def _forecast(state: State) -> Flow:
+def _forecast(state: State) -> Block:
     """How warm the air will be once the driver has left, with the climate control off and on."""
 
     def warmth(minutes: int, climate: bool) -> Label:

@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.apps.settings.state import Connections
 from automotive_cosim.cockpit.cards import content, heading
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.drawing import text_width
-from automotive_cosim.cockpit.flow import Flow, Part, at, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, BlockPart, at, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes
 from automotive_cosim.cockpit.map import camera_of
@@ -66,7 +66,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
     )
 
 
-def _way(state: State) -> Flow:
+def _way(state: State) -> Block:
     """The present road, the next turn, and how far it is to go."""
     turn = next_turn(state)
     ahead = None if state.outside is None else state.outside.driving.ahead
@@ -78,7 +78,9 @@ def _way(state: State) -> Flow:
         align="right",
         style=Type.LABEL,
     )
-    words: Part = Label(key="home.street", text=street(state), description=say("Current road"), style=Type.STRONG)
+    words: BlockPart = Label(
+        key="home.street", text=street(state), description=say("Current road"), style=Type.STRONG
+    )
     if turn:
         then = Label(
             key="home.turn",
@@ -87,12 +89,12 @@ def _way(state: State) -> Flow:
             style=Type.CAPTION,
             tone="muted",
         )
-        words = Flow((words, then), lambda box: (box.top(34).moved(0, 4), box.below(36).top(24)))
+        words = Block((words, then), lambda box: (box.top(34).moved(0, 4), box.below(36).top(24)))
     picture = Glyph(icon=turn[0].icon if turn else Icon.MAP, size=34, tone="accent")
     return line(14, (36, at(lambda box: box.middle(36, 36), picture)), 12, words, 8, (100, left), 20)
 
 
-def drive_card(state: State) -> Flow:
+def drive_card(state: State) -> Block:
     """Speed, range and battery."""
     signals, telltales = state.signals, lit(state)
     level, shown = signals[ENERGY.LEVEL], speed(signals, signals[MOTION.SPEED])
@@ -119,20 +121,20 @@ def drive_card(state: State) -> Flow:
     )
     bar = Bar(share=round(level / 100, 2), tone="good" if level > 15 else "warning")
     reach = stack(heading(say("Range")), 2, (40, line((130, far), (90, charge))), 14, (12, bar), REST)
-    over = Flow((pace, reach), lambda box: (box, box.right_part(220)))
+    over = Block((pace, reach), lambda box: (box, box.right_part(220)))
     return framed(over, (24, 14))
 
 
-def _live(key: str, name: str, icon: Icon, screen: str, value: Label, note: Label) -> Flow:
+def _live(key: str, name: str, icon: Icon, screen: str, value: Label, note: Label) -> Block:
     """A card that shows an app's state and opens it."""
     picture = Glyph(icon=icon, size=26, tone="accent")
-    parts = Flow(
+    parts = Block(
         (picture, stack((50, line(value, 40)), REST, (32, note))), lambda box: (box.top(30).right_part(30), box)
     )
     return framed(parts, (20, 12), key=key, description=name, on_tap=Show(screen))
 
 
-def _climate_card(state: State) -> Flow:
+def _climate_card(state: State) -> Block:
     signals = state.signals
     words = say("Humidity {humidity} %", humidity=f"{signals[HVAC.CABIN_HUMIDITY]:.0f}")
     if signals[GLASS.WINDSHIELD_FOG] >= NOTICED:
@@ -150,7 +152,7 @@ def _climate_card(state: State) -> Flow:
     return _live("home.climate", say("Climate"), Icon.CLIMATE, "climate", value, heading(words, "home.cabin_note"))
 
 
-def _outside_card(state: State) -> Flow:
+def _outside_card(state: State) -> Block:
     """The worst of the phenomena outside."""
     readings = [(known, known.read(state)) for known in PHENOMENA.values()]
     worst, reading = max(readings, key=lambda pair: pair[1].share)
@@ -170,7 +172,7 @@ _WORDS = {kind: name for kind, (name, _) in KINDS.items()} | {
 """Names of alerts in this card."""
 
 
-def _safety_card(state: State) -> Flow:
+def _safety_card(state: State) -> Block:
     last = state.of(Alerts).given[-1] if state.of(Alerts).given else None
     title = say("Warn driver") if last is None else say("{kind} alert", kind=_WORDS[last.alert.kind])
     words = say("No alerts yet") if last is None else say("Given at {time}", time=last.clock)
@@ -180,7 +182,7 @@ def _safety_card(state: State) -> Flow:
     )
 
 
-def _phone_card(state: State) -> Flow:
+def _phone_card(state: State) -> Block:
     icon, words, about = _phone_line(state)
     value = Label(key="home.phone.value", text=words, style=Type.TITLE)
     return _live("home.phone", say("Phone"), icon, "phone", value, heading(about, "home.phone.note"))
@@ -197,7 +199,7 @@ def _phone_line(state: State) -> tuple[Icon, str, str]:
     return Icon.PHONE, new, say("Do not disturb") if phone.do_not_disturb else state.of(Connections).phone
 
 
-def media_card(state: State) -> Flow:
+def media_card(state: State) -> Block:
     """What plays now."""
     signals = state.signals
     playing, track, artist = signals[MEDIA.ACTION] == "PLAY", signals[MEDIA.TRACK], signals[MEDIA.ARTIST]

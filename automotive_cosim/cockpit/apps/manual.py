@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.cards import content, note, rows, search
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.flow import Flow, card, fill, framed, line, panels, stack
+from automotive_cosim.cockpit.flow import Block, card, fill, framed, line, panels, stack
 from automotive_cosim.cockpit.functions import CallMade, locked, offered
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Pick, Show
@@ -21,9 +21,9 @@ from automotive_cosim.contracts import Surroundings
 from automotive_cosim.contracts.text import say
 from automotive_cosim.formats.annotations import OneOf
 
-Topic = tuple[str, Icon, str]
+ManualTopic = tuple[str, Icon, str]
 """Name, picture and text."""
-TOPICS: tuple[Topic, ...] = (
+TOPICS: tuple[ManualTopic, ...] = (
     (
         say("Windows are fogged"),
         Icon.DEFROST_FRONT,
@@ -96,7 +96,7 @@ TOPICS: tuple[Topic, ...] = (
         say("Set the seat first, then the mirrors. Up to three positions can be stored and recalled while parked."),
     ),
 )
-"""Topic, icon and text."""
+"""Name, icon and text."""
 FILM_S = 40.0
 """Length of a topic's video."""
 
@@ -119,7 +119,7 @@ class ManualFilm(AppData):
             state.keep(ManualFilm())
 
 
-def _film(topic: int, icon: Icon, state: State) -> Flow:
+def _film(topic: int, icon: Icon, state: State) -> Block:
     """The topic's video: its picture, its progress while it plays, and the button."""
     film = state.of(ManualFilm)
     if film.topic != topic:
@@ -140,7 +140,7 @@ def _film(topic: int, icon: Icon, state: State) -> Flow:
         tone="accent",
     )
     bar = Bar(share=round(played_s / FILM_S, 2))
-    shown = Flow((picture, bar), lambda box: (box.middle(96, 96), box.inset(20, 12).bottom_part(8)))
+    shown = Block((picture, bar), lambda box: (box.middle(96, 96), box.inset(20, 12).bottom_part(8)))
     stop = Button(
         key="manual.film",
         text=say("Stop the video"),
@@ -163,7 +163,7 @@ def manual(state: State) -> tuple[Widget, ...]:
     first: Message | None = Show("manual", str(found[0][0])) if found else None
     field = search("manual.search", say("Search the manual"), say("Search the manual"), state, first)
 
-    def entry(index: int, each: tuple[int, Topic]) -> Row:
+    def entry(index: int, each: tuple[int, ManualTopic]) -> Row:
         number, (words, picture, _) = each
         return Row(
             key=f"manual.topic.{number}",

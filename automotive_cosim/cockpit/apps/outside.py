@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.apps.vehicle.commands import Wash
 from automotive_cosim.cockpit.cards import content, heading
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.controls import CONTROLS
-from automotive_cosim.cockpit.flow import Flow, card, fill, grid, line, panels, stack
+from automotive_cosim.cockpit.flow import Block, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Pick
 from automotive_cosim.cockpit.notices import ICE_C
@@ -289,7 +289,7 @@ def outside(state: State) -> tuple[Widget, ...]:
     return fill(content(state), panels((400, grid(1, 8, *lines)), _detail(PHENOMENA[chosen], state)))
 
 
-def _detail(known: Phenomenon, state: State) -> Flow:
+def _detail(known: Phenomenon, state: State) -> Block:
     reading = known.read(state)
     bad = reading.share >= 0.5
     words = stack(

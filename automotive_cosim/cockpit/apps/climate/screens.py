@@ -21,7 +21,7 @@ from automotive_cosim.cockpit.cards import (
 )
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.controls import CONTROLS, shown
-from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, panels, stack
+from automotive_cosim.cockpit.flow import Block, at, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, panes
 from automotive_cosim.cockpit.messages import Show
@@ -63,7 +63,7 @@ def _three(rect: Rect) -> tuple[Rect, Rect, Rect]:
     return driver, middle, passenger
 
 
-def _zone(who: str, name: str, warmth: Signal[float], seat: Signal[float], third: Tile, state: State) -> Flow:
+def _zone(who: str, name: str, warmth: Signal[float], seat: Signal[float], third: Tile, state: State) -> Block:
     control = CONTROLS[warmth]
     value = Label(
         key=control.key,
@@ -92,7 +92,7 @@ def _zone(who: str, name: str, warmth: Signal[float], seat: Signal[float], third
     return card((30, heading(name)), 6, (88, value), 12, steps, REST, (260, tiles), padding=SMALL)
 
 
-def _air(state: State) -> Flow:
+def _air(state: State) -> Block:
     fastest = Button(
         key="hvac.fan.max",
         text=say("Max"),
@@ -109,7 +109,7 @@ def _air(state: State) -> Flow:
     )
 
 
-def _switches(state: State) -> Flow:
+def _switches(state: State) -> Block:
     known = (
         HVAC.AIR_CONDITIONING,
         HVAC.AUTO,
@@ -123,7 +123,7 @@ def _switches(state: State) -> Flow:
     return grid(4, 12, *(switch(signal, state) for signal in known))
 
 
-def _glass(state: State) -> Flow:
+def _glass(state: State) -> Block:
     """The visibility through the windows, and the air in the cabin."""
     signals = state.signals
     glasses = (
@@ -169,7 +169,7 @@ def comfort(state: State) -> tuple[Widget, ...]:
     return fill(content(state), panels(_rear(state), _schedule(state)))
 
 
-def _rear(state: State) -> Flow:
+def _rear(state: State) -> Block:
     signals = state.signals
     seats = (
         levels(signal, state, SEAT_LEVELS, told=say("{name}: {value}", name=name, value=say("Seat heat")))
@@ -202,7 +202,7 @@ def _rear(state: State) -> Flow:
     )
 
 
-def _schedule(state: State) -> Flow:
+def _schedule(state: State) -> Block:
     timer = state.of(ClimateSchedule).timer
     ready = say("The cabin will be ready at {time}", time=timer.shown)
     prepare = Tile(

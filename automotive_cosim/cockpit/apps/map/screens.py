@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.apps.map.scene import Spot, box_of, ego, goal, inc
 from automotive_cosim.cockpit.apps.map.state import Navigation, Turn, Viewpoint, turns
 from automotive_cosim.cockpit.cards import HELD_STEPS, choices, content, heading, note, rows, search
 from automotive_cosim.cockpit.commands import Set
-from automotive_cosim.cockpit.flow import Flow, at, card, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, at, card, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
@@ -292,7 +292,7 @@ def next_turn(state: State) -> tuple[Turn, float] | None:
     return next(iter(turns_ahead(state)), None)
 
 
-def _turn_plate(ahead: tuple[Turn, float], state: State) -> Flow:
+def _turn_plate(ahead: tuple[Turn, float], state: State) -> Block:
     turn, away_m = ahead
     far = Label(
         key="map.next_turn.distance",
@@ -313,7 +313,7 @@ def _turn_plate(ahead: tuple[Turn, float], state: State) -> Flow:
     return framed(parts, (14, 0), look="plate")
 
 
-def street_plate(state: State) -> Flow:
+def street_plate(state: State) -> Block:
     """The present road, over a map."""
     tunnel = state.outside is not None and state.outside.driving.road.in_tunnel
     picture = Glyph(
@@ -328,7 +328,7 @@ def street_plate(state: State) -> Flow:
     return framed(line((44, shown), 12, words, 20), look="plate")
 
 
-def _panel(state: State) -> Flow:
+def _panel(state: State) -> Block:
     found = matches(state)
     typed = bool(state.typed.get("map.search")) or state.focus == "map.search"
     shown = state.picked["map.list"]
@@ -404,7 +404,7 @@ def matches(state: State) -> tuple[str, ...]:
     return (*places, *streets)[:RESULTS]
 
 
-def _way(state: State) -> Flow:
+def _way(state: State) -> Block:
     goal = state.of(Navigation).destination
     faster = Button(key="map.faster_route", text=say("Faster"), icon=Icon.ROUTE, on_tap=Guide(""))
     details = Button(key="map.route", text=say("Route"), icon=Icon.TURNS, on_tap=Show("route"))
@@ -418,7 +418,7 @@ def _way(state: State) -> Flow:
     )
 
 
-def arrival(key: str, state: State) -> Flow:
+def arrival(key: str, state: State) -> Block:
     """Arrival time, distance and delay."""
     ahead = None if state.outside is None else state.outside.driving.ahead
     time, left, late = "--:--", "", ""

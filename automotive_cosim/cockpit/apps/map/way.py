@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, NO_GOAL, Navigati
 from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.cards import SMALL, choice, choices, heading, note, rows
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.flow import Item, Part, at, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import BlockItem, BlockPart, at, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Back, Pick, Show
 from automotive_cosim.cockpit.places import SORTS, Destination, Gazetteer, PlaceKind
@@ -63,7 +63,7 @@ def along(state: State, places: Sequence[Destination]) -> tuple[Destination, ...
     return tuple(sorted(places, key=lambda place: (beside[place], place.name)))
 
 
-def _page(state: State, text: str, icon: Icon, key: str, *items: Item) -> tuple[Widget, ...]:
+def _page(state: State, text: str, icon: Icon, key: str, *items: BlockItem) -> tuple[Widget, ...]:
     """A title with a way back, what is given below it, and the map."""
     picture = at(lambda box: box.middle(32, 32), Glyph(icon=icon, size=28, tone="accent"))
     back = Button(key=f"{key}.back", description=say("Back"), icon=Icon.BACK, on_tap=Back())
@@ -71,7 +71,7 @@ def _page(state: State, text: str, icon: Icon, key: str, *items: Item) -> tuple[
     return *fill(panel(state), stack((56, head), *items)), sight(state)
 
 
-def _kinds(state: State) -> Part:
+def _kinds(state: State) -> BlockPart:
     def entry(index: int, kind: PlaceKind) -> Button:
         return Button(
             key=f"explore.kind.{kind}",
@@ -105,7 +105,7 @@ def place(state: State) -> tuple[Widget, ...]:
     )
 
 
-def _place_buttons(name: str, known: Destination | None, state: State) -> Iterator[Item]:
+def _place_buttons(name: str, known: Destination | None, state: State) -> Iterator[BlockItem]:
     navigation = state.of(Navigation)
     saved = name in navigation.favourites
     goal = navigation.destination
@@ -151,7 +151,7 @@ def route(state: State) -> tuple[Widget, ...]:
     return _page(state, goal, Icon.TURNS, "route", 8, (72, summary), 12, (56, tabs), 12, (REST, body))
 
 
-def _turn_list(state: State) -> Part:
+def _turn_list(state: State) -> BlockPart:
     def entry(index: int, each: tuple[Turn, float]) -> Row:
         turn, away_m = each
         return Row(
@@ -167,7 +167,7 @@ def _turn_list(state: State) -> Part:
     return turns if ahead else note("route.turns.empty", say("The route is not known yet"))
 
 
-def _ways(state: State) -> Part:
+def _ways(state: State) -> BlockPart:
     """The present route, alternatives, and places to charge on the way."""
     ahead = None if state.outside is None else state.outside.driving.ahead
     others = () if ahead is None else ahead.alternatives
@@ -219,7 +219,7 @@ def _more(eta_s: float, now_s: float) -> str:
     return say("{minutes} min shorter", minutes=-minutes)
 
 
-def _options(state: State) -> Part:
+def _options(state: State) -> BlockPart:
     navigation = state.of(Navigation)
     onward = navigation.onward
 

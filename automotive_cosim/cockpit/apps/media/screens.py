@@ -9,7 +9,7 @@ from automotive_cosim.cockpit.apps.media.state import Entry, Library, Listening,
 from automotive_cosim.cockpit.cards import choice, choices, content, note, rows, search, slider, switch
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.controls import CONTROLS
-from automotive_cosim.cockpit.flow import Flow, Part, at, card, fill, grid, line, panels, stack
+from automotive_cosim.cockpit.flow import Block, BlockPart, at, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Pick, Show
 from automotive_cosim.cockpit.signals import LINK, MEDIA, Signal
@@ -45,7 +45,7 @@ def media(state: State) -> tuple[Widget, ...]:
     return fill(content(state), panels((480, _now(state)), page))
 
 
-def _filters(state: State) -> Flow:
+def _filters(state: State) -> Block:
     shown = state.picked["media.list"]
     tracks = state.signals[MEDIA.SOURCE] in ("BLUETOOTH", "USB")
     kinds = [("all", say("All")), ("liked", say("Liked")), *([("playlists", say("Playlists"))] if tracks else [])]
@@ -55,7 +55,7 @@ def _filters(state: State) -> Flow:
     )
 
 
-def _browse(source: str, state: State) -> Part:
+def _browse(source: str, state: State) -> BlockPart:
     shown = state.picked["media.list"]
     if source == "INTERNET":
         return _shows(state)
@@ -67,7 +67,7 @@ def _browse(source: str, state: State) -> Part:
     return _entries(entries, state)
 
 
-def _entries(entries: tuple[Entry, ...], state: State) -> Part:
+def _entries(entries: tuple[Entry, ...], state: State) -> BlockPart:
     return (
         rows(
             "media.entries",
@@ -95,7 +95,7 @@ def _entry(key: str, entry: Entry, state: State, on_tap: Message) -> Row:
     )
 
 
-def _playlists(state: State) -> Part:
+def _playlists(state: State) -> BlockPart:
     now = state.of(Listening)
 
     def entry(index: int, each: Playlist) -> Row:
@@ -111,7 +111,7 @@ def _playlists(state: State) -> Part:
     return rows("media.playlists", say("Playlists"), state, now.playlists, entry)
 
 
-def _shows(state: State) -> Flow:
+def _shows(state: State) -> Block:
     """Podcasts on the left, episodes of the chosen one on the right."""
     chosen = state.picked["media.show"]
     offline = "" if state.signals[LINK.ONLINE] else say("Podcasts need a connection")
@@ -187,7 +187,7 @@ def playlist(state: State) -> tuple[Widget, ...]:
     return fill(content(state), panels((480, _now(state)), stack((64, bar), 12, listed)))
 
 
-def _now(state: State) -> Flow:
+def _now(state: State) -> Block:
     signals, listening = state.signals, state.of(Listening)
     entry = state.of(Library).by_uri[signals[MEDIA.PLAYED]]
     playing = signals[MEDIA.ACTION] == "PLAY"
@@ -210,7 +210,7 @@ def _now(state: State) -> Flow:
         on_tap=Set(MEDIA.ACTION, "STOP" if playing else "PLAY"),
     )
 
-    def skip(key: str, words: str, icon: Icon, by: int) -> Flow:
+    def skip(key: str, words: str, icon: Icon, by: int) -> Block:
         button = Button(key=key, description=words, icon=icon, icon_size=40, look=Look.PLAIN, on_tap=Skip(by))
         return at(lambda box: box.inset(0, 8), button)
 
@@ -258,7 +258,7 @@ def _sign(signal: Signal[bool], state: State, key: str = "", name: str = "") -> 
     return replace(switch(signal, state, key=key, name=""), description=name or CONTROLS[signal].name)
 
 
-def _progress(state: State, length_s: float | None) -> Part:
+def _progress(state: State, length_s: float | None) -> BlockPart:
     if length_s is None:
         return Label(key="media.live", text=say("Live"), style=Type.LABEL, tone="accent")
     played_s = state.of(Listening).played_s

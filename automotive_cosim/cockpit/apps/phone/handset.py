@@ -9,7 +9,7 @@ from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.apps.settings.state import Connections
 from automotive_cosim.cockpit.cards import content
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.flow import Flow, Part, fill, framed, grid, panels, stack
+from automotive_cosim.cockpit.flow import Block, BlockPart, fill, framed, grid, panels, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Show
@@ -21,12 +21,12 @@ from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Tile, T
 from automotive_cosim.contracts.text import counted, say, say_in
 
 
-def beside_handset(state: State, page: Part) -> tuple[Widget, ...]:
+def beside_handset(state: State, page: BlockPart) -> tuple[Widget, ...]:
     """A screen of the phone: the card, and a page."""
     return fill(content(state), panels((320, _handset(state)), page))
 
 
-def _handset(state: State) -> Part:
+def _handset(state: State) -> BlockPart:
     """The present call, or the phone's state, and permanent buttons."""
     phone = state.of(Phone)
     on = phone.do_not_disturb
@@ -57,10 +57,10 @@ def _handset(state: State) -> Part:
         above, first, _, second = column(box, REST, 68, 12, 68)
         return above, first, second
 
-    return framed(Flow((call, quiet, emergency), divide), (20, 20))
+    return framed(Block((call, quiet, emergency), divide), (20, 20))
 
 
-def _call(icon: Icon, tone: Tone, name: Label, line: Label, acts: tuple[int, Part]) -> Flow:
+def _call(icon: Icon, tone: Tone, name: Label, line: Label, acts: tuple[int, BlockPart]) -> Block:
     """A picture, a name, a line below it, and what can be done, one above the other."""
     picture = Glyph(icon=icon, size=72, tone=tone)
     return stack(8, (88, picture), 16, (36, name), 2, (30, line), 24, acts, REST)
@@ -78,7 +78,7 @@ def _act(key: str, text: str, icon: Icon, look: Look, on_tap: Message) -> Button
     return Button(key=key, text=text, icon=icon, icon_size=32, look=look, stacked=True, on_tap=on_tap)
 
 
-def _linked(state: State) -> Flow:
+def _linked(state: State) -> Block:
     on = state.signals[LINK.BLUETOOTH]
     count = len(state.of(Directory).unread(state.of(Phone)))
     new = counted("{n} unread message", "{n} unread messages", count) if count else say("No new messages")
@@ -92,7 +92,7 @@ def _linked(state: State) -> Flow:
     )
 
 
-def _on_call(state: State) -> Flow:
+def _on_call(state: State) -> Block:
     phone = state.of(Phone)
     call = phone.on_call
     assert call is not None
@@ -116,7 +116,7 @@ def _on_call(state: State) -> Flow:
     )
 
 
-def _ringing(who: str) -> Flow:
+def _ringing(who: str) -> Block:
     answer = _act("phone.answer", say_in("call", "Answer"), Icon.PHONE, Look.ACCENT, TakeCall())
     decline = _act("phone.decline", say("Decline"), Icon.HANG_UP, Look.CRITICAL, DeclineCall())
     return _call(

@@ -7,7 +7,7 @@ from automotive_cosim.cockpit.apps.phone.handset import beside_handset
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phone
 from automotive_cosim.cockpit.cards import heading, note, rows
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.flow import Flow, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Show
@@ -63,7 +63,7 @@ def contact(state: State) -> tuple[Widget, ...]:
         act("message", say("Message"), Icon.MESSAGE, Show("thread", who)),
         act("favourite", say("Remove favourite") if favourite else say("Add favourite"), star, kept),
     )
-    over = Flow((back, head), lambda box: (box.left(64).top(64), box))
+    over = Block((back, head), lambda box: (box.left(64).top(64), box))
     return beside_handset(state, stack((264, over), GAP, (108, acts), REST))
 
 
@@ -116,4 +116,4 @@ def thread(state: State) -> tuple[Widget, ...]:
         return head, foot, right, above, seen.middle(PHOTO_WIDE, PHOTO_HIGH)
 
     spoken_so_far = talk if lines else note("thread.hidden", nothing)
-    return beside_handset(state, Flow((bar, read, answers, spoken_so_far, picture), divide))
+    return beside_handset(state, Block((bar, read, answers, spoken_so_far, picture), divide))

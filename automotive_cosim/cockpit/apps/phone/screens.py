@@ -6,7 +6,7 @@ from automotive_cosim.cockpit.apps.phone.commands import Dial
 from automotive_cosim.cockpit.apps.phone.handset import beside_handset
 from automotive_cosim.cockpit.apps.phone.state import Contact, Directory, PastCall, Phone, Thread
 from automotive_cosim.cockpit.cards import choices, heading, note, rows, search
-from automotive_cosim.cockpit.flow import Flow, Part, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, BlockPart, framed, grid, line, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import BACKSPACE, Key, Pick, Show
 from automotive_cosim.cockpit.restrictions import Restriction
@@ -44,12 +44,12 @@ def phone(state: State) -> tuple[Widget, ...]:
     return beside_handset(state, stack((64, tabs), GAP, (REST, parts[shown](state))))
 
 
-def _people(people: Part) -> Flow:
+def _people(people: BlockPart) -> Block:
     """A list of people, under what a tap on one does."""
     return stack(heading(say("Select a contact to call or message"), "phone.about"), 8, people)
 
 
-def _favourites(state: State) -> Part:
+def _favourites(state: State) -> BlockPart:
     names = state.of(Phone).favourites
 
     def entry(index: int, name: str) -> Button:
@@ -68,7 +68,7 @@ def _favourites(state: State) -> Part:
     return _people(rows("phone.favourites", say("Favourites"), state, names, entry, columns=3, height=128, gap=12))
 
 
-def _recents(state: State) -> Part:
+def _recents(state: State) -> BlockPart:
     calls = (*state.of(Phone).made, *state.of(Directory).calls)
 
     def entry(index: int, call: PastCall) -> Row:
@@ -86,7 +86,7 @@ def _recents(state: State) -> Part:
     return _people(rows("phone.recents", say("Recent calls"), state, calls, entry))
 
 
-def _contacts(state: State) -> Part:
+def _contacts(state: State) -> BlockPart:
     wanted = state.typed.get("phone.search", "").casefold().strip()
     found = tuple(contact for contact in state.of(Directory).contacts if wanted in contact.name.casefold())
 
@@ -108,7 +108,7 @@ def _contacts(state: State) -> Part:
     )
 
 
-def _messages(state: State) -> Part:
+def _messages(state: State) -> BlockPart:
     phone = state.of(Phone)
 
     def entry(index: int, thread: Thread) -> Row:
@@ -126,7 +126,7 @@ def _messages(state: State) -> Part:
     return rows("phone.threads", say("Messages"), state, state.of(Directory).written(phone), entry)
 
 
-def _keypad(state: State) -> Part:
+def _keypad(state: State) -> BlockPart:
     number = state.typed.get("phone.number", "")
     locked = state.locked(Restriction.NO_DIALPAD)
     empty = "" if number else say("Enter a number first")

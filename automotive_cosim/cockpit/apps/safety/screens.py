@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.apps.safety.commands import AskPullOver, AskSlowDo
 from automotive_cosim.cockpit.apps.safety.state import KINDS, AlertDraft, AlertRecord, Alerts
 from automotive_cosim.cockpit.cards import HELD_STEPS, SMALL, choices, content, heading, rows, switch
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.flow import Flow, Item, card, fill, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, BlockItem, card, fill, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, panes
 from automotive_cosim.cockpit.messages import Back, Show
@@ -56,7 +56,7 @@ def _put(draft: AlertDraft) -> Put:
     return Put(draft, say("The alert is not given yet"))
 
 
-def _kinds(state: State) -> Flow:
+def _kinds(state: State) -> Block:
     draft = state.of(AlertDraft)
 
     def entry(index: int, kind: AlertKind) -> Choice:
@@ -75,7 +75,7 @@ def _kinds(state: State) -> Flow:
     return card((30, heading(say("Warn the driver about"))), 6, every, padding=SMALL)
 
 
-def _draft(state: State) -> Flow:
+def _draft(state: State) -> Block:
     draft = state.of(AlertDraft)
     title = say("Choose what to warn about") if draft.kind is None else KINDS[draft.kind][0]
     severities = [
@@ -106,7 +106,7 @@ def _draft(state: State) -> Flow:
     )
 
 
-def _advice(state: State) -> Flow:
+def _advice(state: State) -> Block:
     """Advised speed: the posted limit, or a number."""
     signals, draft = state.signals, state.of(AlertDraft)
     advised = draft.speed_kmh
@@ -146,7 +146,7 @@ def _advice(state: State) -> Flow:
     return stack(heading(name), 12, (64, steps), 12, (52, posted))
 
 
-def _help(state: State) -> Flow:
+def _help(state: State) -> Block:
     def button(key: str, text: str, icon: Icon, on_tap: Message, look: Look = Look.TONAL) -> Button:
         return Button(key=f"safety.{key}", text=text, icon=icon, stacked=True, look=look, on_tap=on_tap)
 
@@ -161,7 +161,7 @@ def _help(state: State) -> Flow:
     return stack((204, buttons), GAP, (REST, _history(state)))
 
 
-def _history(state: State) -> Flow:
+def _history(state: State) -> Block:
     given = state.of(Alerts).given[::-1]
 
     def entry(index: int, each: AlertRecord) -> Row:
@@ -175,7 +175,7 @@ def _history(state: State) -> Flow:
 
     listed = rows("safety.history", say("Alerts given"), state, given, entry, height=84, gap=6)
     empty = Label(key="safety.history.empty", text=say("No alerts yet"), tone="muted", style=Type.LABEL)
-    body: Item = (REST, listed if given else stack((40, empty), REST))
+    body: BlockItem = (REST, listed if given else stack((40, empty), REST))
     return card(heading(say("History")), 6, body, padding=(16, 14))
 
 

@@ -20,7 +20,7 @@ from automotive_cosim.cockpit.cards import (
     title,
 )
 from automotive_cosim.cockpit.commands import Put, Set, SetAll
-from automotive_cosim.cockpit.flow import Flow, at, card, fill, grid, line, panels, stack
+from automotive_cosim.cockpit.flow import Block, at, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import HMI, LINK, MEDIA, VOICE
@@ -40,7 +40,7 @@ PAGES = (
 LANGUAGES = {"en": "English", "fr": "Français", "de": "Deutsch", "ja": "日本語"}
 
 
-def _page(state: State, *cards: Flow) -> tuple[Widget, ...]:
+def _page(state: State, *cards: Block) -> tuple[Widget, ...]:
     return fill(content(state), line((264, menu("settings.page", PAGES, state)), GAP, panels(*cards)))
 
 

@@ -19,7 +19,7 @@ from automotive_cosim.cockpit.cards import (
 )
 from automotive_cosim.cockpit.commands import Put, SetAll
 from automotive_cosim.cockpit.controls import CONTROLS
-from automotive_cosim.cockpit.flow import Flow, card, framed, grid, line
+from automotive_cosim.cockpit.flow import Block, card, framed, grid, line
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Pick, Show
 from automotive_cosim.cockpit.notices import LOW_KPA
@@ -52,7 +52,7 @@ def driving(state: State) -> tuple[Widget, ...]:
     return page(state, (132, mode), GAP, (REST, grid(2, GAP, hold, _tyres(state))))
 
 
-def _tyres(state: State) -> Flow:
+def _tyres(state: State) -> Block:
     corners = (
         ("front_left", say("Front left"), say("Front left tyre"), TYRE.FRONT_LEFT),
         ("front_right", say("Front right"), say("Front right tyre"), TYRE.FRONT_RIGHT),
@@ -98,7 +98,7 @@ def doors(state: State) -> tuple[Widget, ...]:
         (
             176,
             card(
-                (28, Flow(tuple(head), lambda box: (box, box.right_part(box.width - 200)))),
+                (28, Block(tuple(head), lambda box: (box, box.right_part(box.width - 200)))),
                 4,
                 (REST, grid(4, 8, every, *tiles, trunk)),
                 padding=(20, 14),
@@ -109,7 +109,7 @@ def doors(state: State) -> tuple[Widget, ...]:
     )
 
 
-def _windows(state: State) -> Flow:
+def _windows(state: State) -> Block:
     openings = (
         CABIN.DRIVER_WINDOW,
         CABIN.PASSENGER_WINDOW,
@@ -181,7 +181,7 @@ def seats(state: State) -> tuple[Widget, ...]:
     return page(state, (REST, line((540, left), GAP, _memory(state))))
 
 
-def _adjust(signal: Signal[float], text: str, name: str, width: int, gap: int, state: State) -> Flow:
+def _adjust(signal: Signal[float], text: str, name: str, width: int, gap: int, state: State) -> Block:
     """A name and minus and plus; ``name`` is the one that the buttons are told by, if it is not the seat's."""
     steps = stepper(
         signal,
@@ -194,10 +194,10 @@ def _adjust(signal: Signal[float], text: str, name: str, width: int, gap: int, s
     return line((width, heading(text)), gap, steps)
 
 
-def _memory(state: State) -> Flow:
+def _memory(state: State) -> Block:
     held = state.vehicle.held(SEAT.DRIVER_POSITION)
     now, memory = tuple(state.signals[signal] for signal in REMEMBERED), state.of(CarMemory)
-    lines: list[Flow | Widget] = []
+    lines: list[Block | Widget] = []
     for slot, kept in enumerate(memory.memory, 1):
         same = kept == now
         recall = Choice(
@@ -256,7 +256,7 @@ def mirrors(state: State) -> tuple[Widget, ...]:
 
 def _mirror(
     name: str, pan: Signal[float], tilt: Signal[float], fold: Signal[bool], heat: Signal[bool], state: State
-) -> Flow:
+) -> Block:
     lines = [
         _adjust(signal, text, CONTROLS[signal].name, 110, 6, state)
         for signal, text in ((pan, say("Left +, right −")), (tilt, say("Down, up")))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.apps.vehicle.commands import Wash
 from automotive_cosim.cockpit.cards import SMALL, choice, choices, content, heading, levels, stepper, switch
-from automotive_cosim.cockpit.flow import Flow, Item, at, card, fill, framed, grid, line, panels, stack
+from automotive_cosim.cockpit.flow import Block, BlockItem, at, card, fill, framed, grid, line, panels, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, LIGHTS
@@ -26,7 +26,7 @@ TABS = (
 """Key, name and icon of each part of the car, and its screen."""
 
 
-def page(state: State, *items: Item) -> tuple[Widget, ...]:
+def page(state: State, *items: BlockItem) -> tuple[Widget, ...]:
     """The car on the left; on the right its parts, and below them what is given."""
     tabs = choices(
         "vehicle.tab", ((name, text, icon, state.screen == to, Show(to)) for name, text, icon, to in TABS)
@@ -66,7 +66,7 @@ def assistance(state: State) -> tuple[Widget, ...]:
     return page(state, (236, helpers), GAP, (REST, _keeping(state)))
 
 
-def _car(state: State) -> Flow:
+def _car(state: State) -> Block:
     """The car from above, with its lamps and its glass."""
     signals = state.signals
     fog = 1 - (1 - signals[GLASS.WINDSHIELD_FOG]) * (1 - signals[GLASS.WINDSHIELD_FILM])
@@ -98,7 +98,7 @@ def _car(state: State) -> Flow:
     return framed(at(lambda box: box.middle(CAR_WIDTH - 40, box.height - 40), view))
 
 
-def _wipers(state: State) -> Flow:
+def _wipers(state: State) -> Block:
     wash = Button(
         key="wiper.wash",
         text=say("Wash"),
@@ -111,7 +111,7 @@ def _wipers(state: State) -> Flow:
     return framed(grid(1, 12, front, rear), (20, 14))
 
 
-def _keeping(state: State) -> Flow:
+def _keeping(state: State) -> Block:
     """Cruise control on the left, the limiter on the right; only one of them is active."""
     off = "" if state.signals[ADAS.CRUISE_ENABLED] else say("Cruise control is disabled")
     gaps = [(seconds, Quantity(f"{seconds:.1f} s")) for seconds in (1.0, 1.5, 2.0, 2.5, 3.0)]
