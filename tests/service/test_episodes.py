@@ -14,8 +14,8 @@ from automotive_cosim.agents import Oracle
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import FeedbackCode, Json
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.observer import Observer
+from automotive_cosim.episode.session import play
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import TrafficError, UnknownNameError, UserError
