@@ -20,6 +20,7 @@ from automotive_cosim.cli.options import (
     Seed,
     print_json,
 )
+from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import Conditions
 
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ def drive(
         print_json({**row_json(record.row), "out": str(folder)})
         return
     console = Console(highlight=False)
-    _tell(console, record.row)
+    _tell(console, record.row, record.timeline)
     console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
 
 
@@ -111,11 +112,12 @@ def drives(as_json: AsJson = False) -> None:
         typer.echo(f"{'':34} stages {', '.join(family['stages'])}")
 
 
-def _tell(console: Console, row: DriveTrialRow) -> None:
-    """The drive's events and acts in chronological order, what went wrong and why, and its score."""
+def _tell(console: Console, row: DriveTrialRow, timeline: Json) -> None:
+    """The drive's events and acts in chronological order with what became of them, what went wrong and why, and its
+    score."""
     from automotive_cosim.contracts.plain import clock
-    from automotive_cosim.drives.faults import became, faults, key_of, was
-    from automotive_cosim.drives.judge import Worth
+    from automotive_cosim.drives.faults import became, faults, key_of
+    from automotive_cosim.drives.followed import told
 
     lines = [
         (
@@ -126,9 +128,8 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         for event in row.events
     ]
     lines += [
-        (act.time_s, f"  act  {act.words}", was(act, row.events))
-        for act in row.acts
-        if act.worth is not Worth.NEUTRAL
+        (act.time_s, f"  act  {act.words}", came)
+        for act, came in zip(row.acts, told(row.acts, row.events, timeline), strict=True)
     ]
     if key := key_of(row.events):
         console.print(f"In brackets: {key}", markup=False, soft_wrap=True)

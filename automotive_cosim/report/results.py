@@ -198,7 +198,7 @@ def load_results(folder: Path | str) -> pd.DataFrame:
     try:
         import pandas as pd
     except ImportError as error:
-        raise SetupError(f"load_results needs pandas: {install_hint('report')}") from error
+        raise SetupError(f"load_results needs pandas: {install_hint('reports')}") from error
     found = read_results(Path(folder))
     frame = pd.DataFrame([columns(row) for row in (*found.rows, *found.drives)]).set_index("id")
     judged = [name for name in frame.columns if name == "success" or name.startswith("part_")]

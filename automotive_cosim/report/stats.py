@@ -107,7 +107,7 @@ def distributions() -> Any:
     try:
         from scipy import stats
     except ImportError as error:
-        raise SetupError(f"bounds of rates need scipy: {install_hint('report')}") from error
+        raise SetupError(f"bounds of rates need scipy: {install_hint('reports')}") from error
     return stats
 
 

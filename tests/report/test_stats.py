@@ -162,5 +162,5 @@ def test_a_mean_of_few_tasks_or_of_equal_ones_has_no_interval_of_no_width():
 def test_without_scipy_bounds_name_what_brings_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy", None)
     for bound in (stats.upper_bound, stats.rate_upper_bound):
-        with pytest.raises(SetupError, match=re.escape(install_hint("report"))):
+        with pytest.raises(SetupError, match=re.escape(install_hint("reports"))):
             bound(0, 10)

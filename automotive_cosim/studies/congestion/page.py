@@ -35,7 +35,7 @@ def write_congestion(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not a congestion study's, or cannot be written.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     study = CongestionStudy.read(folder)
     return write_shown(study, shown(study))

@@ -30,7 +30,7 @@ def write_study(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not a study's, has no decision that counts, or cannot be written.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     study = Study.read(folder)
     if not study.rows:
