@@ -49,15 +49,15 @@ CEILINGS = {
     "report": (5419, 28, 0),
     "run": (7897, 85, 0),
     "safety": (3249, 27, 0),
-    "scenarios": (1982, 8, 0),
+    "scenarios": (1992, 8, 0),
     "schemas": (84, 0, 0),
     "serve": (2607, 22, 0),
     "service": (428, 6, 0),
     "studies": (12632, 113, 92),
     "tasking": (5680, 124, 0),
     "tasks": (15, 0, 0),
-    "tests": (61447, 122, 0),
-    "traffic": (11310, 76, 0),
+    "tests": (61542, 122, 0),
+    "traffic": (11345, 76, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""

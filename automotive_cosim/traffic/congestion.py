@@ -85,10 +85,6 @@ class Flow(Protocol):
         """The speed on an edge without traffic."""
         ...
 
-    def across(self, edge_id: str) -> float:
-        """The speed through the junction at the end of an edge divided by that without traffic; never 0."""
-        ...
-
     def slow_edges(self) -> tuple[tuple[str, float], ...]:
         """Edges with traffic slower than ``SLOW_BELOW`` of their limit, and their relative speed."""
         ...
@@ -196,10 +192,6 @@ class Congestion:
     def free_mps(self, edge_id: str) -> float:
         """The speed on an edge without traffic."""
         return min(self._free.top_mps, self._edges[edge_id].speed_mps)
-
-    def across(self, edge_id: str) -> float:
-        """See ``Flow``."""
-        return self.relative_speed(edge_id)
 
     def speed_mps(self, edge_id: str) -> float:
         """Mean speed on an edge."""
@@ -352,7 +344,7 @@ def _legs(
         way = ways[index] if after else Crossing(0.0, edge.speed_mps)
         way_s = way.length_m / max(SLOWEST_MPS, way.speed_mps)
         speed_mps, free_mps = flow.speed_mps(edge.edge_id), flow.free_mps(edge.edge_id)
-        across_s = way_s / flow.across(edge.edge_id)
+        across_s = way_s / (speed_mps / free_mps)  # traffic is as slow across the junction at its end
         legs.append(
             _Leg(
                 edge=edge,
