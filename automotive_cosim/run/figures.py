@@ -5,8 +5,8 @@ over the same time, including the aftermath; what differs between them is the ag
 
 The load on the driver while the car moves: the guideline for in-car devices requires that no glance exceed 2 s and
 that a task take at most 12 s of glances (NHTSA, Visual-Manual Driver Distraction Guidelines, 78 FR 24817, 2013).
-The agent's touches count as interaction, because the screen changes before the driver's eyes; new texts in the status
-bar count as read.
+The agent's touches count as interaction, because the screen changes before the driver's eyes; new texts in the
+status bar count as read.
 
 Taps: how well an agent that taps by pixel hits what it can tap.
 """

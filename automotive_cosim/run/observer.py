@@ -1,4 +1,4 @@
-"""What observes a trial while it runs, and what its agent's answers took; they see everything and change nothing."""
+"""What observes a trial while it runs, seeing everything and changing nothing, and what its agent's answers took."""
 
 from __future__ import annotations
 
