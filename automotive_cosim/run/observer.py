@@ -1,4 +1,4 @@
-"""What observes a trial while it runs, seeing everything and changing nothing, and what its agent's answers took."""
+"""What observes a trial while it runs, sees everything and changes nothing; and what its agent's answers took."""
 
 from __future__ import annotations
 
