@@ -1,6 +1,6 @@
 """Many episodes at once, for agents that come from outside: start, observe, act, finish.
 
-    start(spec) -> EpisodeTurn      act(id, action) -> EpisodeTurn ... until turn.end      finish(id) -> what came of it
+    start(spec) -> EpisodeTurn      act(id, action) -> EpisodeTurn ... until turn.end      finish(id) -> its outcome
 
 episodes   the service: ids, a lock per episode, limits, expiry of idle ones
 turn       what an agent is told after each step

@@ -175,8 +175,8 @@ class EpisodeService:
         The rest of a drive that is cut off is driven without the agent.
 
         Returns:
-            What came of it, as a JSON object: ``end``, ``sim_seconds`` from its beginning to its end, ``trace_sha256``
-            (equal for the same specification and actions, whoever sent them); of a task ``success``, ``steps`` and the
+            What came of it, as a JSON object: ``end``, ``sim_seconds`` since its beginning, ``trace_sha256`` (equal
+            for the same specification and actions, whoever sent them); of a task ``success``, ``steps`` and the
             ``verdict``, of a drive its ``result``.
 
         Raises:
