@@ -34,7 +34,7 @@ from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.calls.ledger import run_on
 from automotive_cosim.studies.reroute.batch import REROUTE, drives
 from automotive_cosim.studies.reroute.plan import StudyPlan
-from automotive_cosim.studies.reroute.rows import DriveRow
+from automotive_cosim.studies.reroute.rows import TripRow
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
@@ -238,7 +238,7 @@ def measured(
         REROUTE.run(plan, folder, executor=executor, tell=lambda progress: clock_s.append(time.process_time()))
     took_s = time.perf_counter() - begun_s
     handed_s += [after - before for before, after in pairwise(clock_s[1:])]
-    rows = read_rows(folder, DriveRow)
+    rows = read_rows(folder, TripRow)
     count = sum(len(row.decisions) for row in rows.values())
     cells = f"| {name} | {count} | {took_s:.1f} s | {count / took_s * 60:.1f} | "
     return {key: steady(row) for key, row in rows.items()}, cells

@@ -8,11 +8,11 @@ from itertools import pairwise
 from typing import Any
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.episode.judged import Baseline, JudgedSession
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.session import beginning
+from automotive_cosim.episode.session import Baseline, JudgedSession, beginning
 from automotive_cosim.episode.situation import HandOver, SituationFinder
 from automotive_cosim.episode.specification import ROUNDING_S, End, EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
@@ -20,7 +20,6 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.policy import Conduct
 from automotive_cosim.tasking.verdict import Verdict, judge
 from automotive_cosim.traffic.fork import Simulations
 
@@ -180,9 +179,8 @@ class Episode(JudgedSession):
         return dialogue(texts, half.topics, half.needed_topics, half.neutral)
 
     @property
-    def conduct(self) -> Conduct:
-        """What the house rules are held against, with the seat that the wish comes from."""
-        return replace(super().conduct, voice=self.instance.half.start.voice)
+    def _voice(self) -> Seat:
+        return self.instance.half.start.voice
 
     @property
     def counterfactual(self) -> Mapping[str, Any]:

@@ -30,10 +30,9 @@ from automotive_cosim.run.figures import (
     questioned,
 )
 from automotive_cosim.run.moments import Judged
-from automotive_cosim.run.observer import Answers
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
-from automotive_cosim.run.trial import TrialSetup
+from automotive_cosim.run.trial import Answers, TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.policy import Breach
@@ -132,29 +131,39 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):
         row = replace(self.planned(), end=end, **answers.costs)
         if session is None:
             return replace(row, scenario=open_scenario(self.in_scenario).name)
-        verdict, load = session.verdict, driver_load(session.steps)
-        driven, end_s = session.driven, session.driven[-1].time_s
-        measured = following_figures(states_of(driven))
-        return replace(
+        verdict, start = session.verdict, session.moments[0]
+        row = replace(
             row,
             scenario=session.scenario.name,
             parameters=dict(session.instance.parameters),
             traffic_seed=session.traffic_seed,
-            country=session.moments[0].context.country,
-            success=verdict.success if verdict else None,
-            reward=float(verdict is not None and verdict.success),
+            country=start.context.country,
             agent_error=session.failure,
-            parts=PartsHeld.of(verdict) if verdict else None,
-            breaches=session.breaches if verdict else None,
-            goal_s=verdict.goal_s if verdict else None,
-            reason_fits=verdict.reason_fits if verdict else None,
-            alerts=alerts(session.moments[0], session.moments[-1]),
-            **questioned(session.questions),
             steps=len(session.steps) - 1,
             malformed=len(session.malformed),
             malformed_why=next(iter(session.malformed), ""),
             sim_seconds=round(session.seconds, 3),
             thought_s=round(sum(step.thought_s for step in session.steps), 1),
+            prompt_tokens=answers.prompts,
+            held_out=session.instance.held_out,
+            trace_sha256=session.trace_sha256,
+        )
+        if verdict is not None:
+            row = replace(
+                row,
+                success=verdict.success,
+                reward=float(verdict.success),
+                parts=PartsHeld.of(verdict),
+                breaches=session.breaches,
+                goal_s=verdict.goal_s,
+                reason_fits=verdict.reason_fits,
+            )
+        driven, end_s, load = session.driven, session.driven[-1].time_s, driver_load(session.steps)
+        measured = following_figures(states_of(driven))
+        return replace(
+            row,
+            alerts=alerts(start, session.moments[-1]),
+            **questioned(session.questions),
             speed_compliance=compliance(driven),
             min_time_to_collision_s=measured.min_ttc_s,
             measures=measured,
@@ -164,9 +173,6 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):
             interaction_s=load.interaction_s,
             within_guideline=load.within_guideline,
             taps=pixel_taps(session.steps),
-            prompt_tokens=answers.prompts,
-            held_out=session.instance.held_out,
-            trace_sha256=session.trace_sha256,
         )
 
     def told(self, session: Episode) -> EpisodeResult:

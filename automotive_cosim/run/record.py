@@ -20,7 +20,7 @@ from PIL import Image
 
 from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.contracts import KMH_PER_MPS, Json
-from automotive_cosim.episode.judged import JudgedSession
+from automotive_cosim.episode.session import JudgedSession
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, screenshot
 from automotive_cosim.formats.writing import (

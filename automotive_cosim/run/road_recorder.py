@@ -26,7 +26,7 @@ from automotive_cosim.contracts import (
     Weather,
 )
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.episode.judged import JudgedSession
+from automotive_cosim.episode.session import JudgedSession
 from automotive_cosim.formats.layout import ROAD
 from automotive_cosim.formats.writing import growing, make_folder
 from automotive_cosim.geo.breaches import limit_at

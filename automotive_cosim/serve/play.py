@@ -26,7 +26,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.episode.judged import JudgedSession
+from automotive_cosim.episode.session import JudgedSession
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page

@@ -176,7 +176,7 @@ def write_study(folder: Path) -> Path:
     """A study of rerouting in the small scenario: a decision with another way, and one of an older version."""
     pytest.importorskip("automotive_cosim.studies")
     from automotive_cosim.studies.reroute.plan import StudyPlan
-    from automotive_cosim.studies.reroute.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
+    from automotive_cosim.studies.reroute.rows import NOTHING, Branch, Decision, News, OthersTotals, TripRow
 
     plan = StudyPlan(scenario="grid", seeds=(0,), policies=("never", "always"))
     job = plan.jobs()[0]
@@ -192,7 +192,7 @@ def write_study(folder: Path) -> Path:
         agents_rerouted=(), branches=(branch,),
     )  # fmt: skip
     new = replace(old, at_s=950.0, ways=(("cwc0", "c0c1", "c1c2"), ("cwc0", "c0n0", "n0n1")))
-    row = DriveRow(
+    row = TripRow(
         id=job.id, scenario="grid", share=job.share, seed=0, departure_s=0.0, trip=job.trip.name, stay=NOTHING,
         decisions=(old, new),
     )  # fmt: skip

@@ -19,7 +19,7 @@ from automotive_cosim.studies.calls.ledger import keep_ledger, others, run_on, s
 from automotive_cosim.studies.reroute.drive import run_drive
 from automotive_cosim.studies.reroute.futures import own_choice_of
 from automotive_cosim.studies.reroute.plan import StudyPlan
-from automotive_cosim.studies.reroute.rows import NOTHING, DriveRow, Totals
+from automotive_cosim.studies.reroute.rows import NOTHING, Totals, TripRow
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteCopy, RemoteTraffic
 
@@ -31,7 +31,7 @@ STEP_S = 0.1
 
 
 @pytest.fixture(scope="module")
-def driven(small: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> tuple[DriveRow, Path]:
+def driven(small: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> tuple[TripRow, Path]:
     """The row of the one drive, and the folder of SUMO's outputs."""
     outputs = tmp_path_factory.mktemp("outputs")
     (job,) = replace(small, step_s=STEP_S).jobs()
@@ -61,7 +61,7 @@ def reckoned_s() -> tuple[float, float]:
     return leaves_s + length_m("exit") / SPEED_MPS, other_s
 
 
-def test_the_gain_is_the_one_reckoned_by_hand(driven: tuple[DriveRow, Path]) -> None:
+def test_the_gain_is_the_one_reckoned_by_hand(driven: tuple[TripRow, Path]) -> None:
     row, _ = driven
     (decision,) = row.decisions
     stay = row.stay
@@ -78,7 +78,7 @@ def test_the_gain_is_the_one_reckoned_by_hand(driven: tuple[DriveRow, Path]) -> 
     assert branch.others.gain_s == 0, "the lorries never have the ego before them"
 
 
-def test_sumos_own_outputs_say_the_same(driven: tuple[DriveRow, Path]) -> None:
+def test_sumos_own_outputs_say_the_same(driven: tuple[TripRow, Path]) -> None:
     row, outputs = driven
     told = futures(row)
     found = list(trips(outputs))
@@ -108,7 +108,7 @@ def test_they_say_the_same_where_cars_stop_and_waver(tmp_path: Path) -> None:
         assert totals.co2_g == pytest.approx(trip.co2_g, rel=0.02)
 
 
-def futures(row: DriveRow) -> list[Totals]:
+def futures(row: TripRow) -> list[Totals]:
     """The drive's own, the branches' of its one decision, and the placebo's."""
     (decision,) = row.decisions
     assert row.stay is not None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.studies.calibration.settings import CalibrationOptions
 from automotive_cosim.studies.equilibrium.settings import EquilibriumSettings, OptimumSettings
-from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, Decision, DriveRow, News
+from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, Decision, News, TripRow
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
 from tests.cli.test_derived import is_option, settings_of
 from tests.laws import over
@@ -32,8 +32,8 @@ def test_a_drive_comes_back_from_its_line_and_what_is_added_to_it_has_a_default(
         at_s=900.0, edge="e", delay_s=40.0, eta_s=100.0, relative_speed=0.5, complies_above=0.3, news=(news,),
         own=0, agents={"asurada": 0}, agents_rerouted=("asurada",), branches=(branch,), placebo=branch,
     )  # fmt: skip
-    row = DriveRow(
+    row = TripRow(
         id="d", scenario="grid", share=0.5, seed=0, departure_s=60.0, trip="t", stay=NOTHING, decisions=(decision,)
     )
     comes_back(row)
-    assert required_of(DriveRow) == {"id", "scenario", "share", "seed", "departure_s", "trip"}
+    assert required_of(TripRow) == {"id", "scenario", "share", "seed", "departure_s", "trip"}

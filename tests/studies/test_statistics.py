@@ -31,10 +31,10 @@ from automotive_cosim.studies.reroute.rows import (
     NOTHING,
     Branch,
     Decision,
-    DriveRow,
     News,
     OthersTotals,
     Replicate,
+    TripRow,
 )
 from automotive_cosim.studies.reroute.tables import outcomes, parts
 from automotive_cosim.studies.reroute.warnings import warnings
@@ -68,8 +68,8 @@ def decision(*gains_s: float, offered_s: float | None = 80.0, delay_s: float = 7
     return replace(made, **more)
 
 
-def drive(*decisions: Decision, seed: int = 0) -> DriveRow:
-    return DriveRow(
+def drive(*decisions: Decision, seed: int = 0) -> TripRow:
+    return TripRow(
         id=f"d{seed}",
         scenario="grid",
         share=0.5,
@@ -252,13 +252,13 @@ def parted(gain_s: float, avoided_s: float, lost_s: float) -> Decision:
     )
 
 
-def study(rows: Sequence[DriveRow], **more: Any) -> Study:
+def study(rows: Sequence[TripRow], **more: Any) -> Study:
     """Of the grid at its own steps, one drive a seed."""
     more = {"departures_s": (0.0,), "trips": ("avenue",), "seeds": range(len({row.seed for row in rows}))} | more
     return Study(Path(), {}, StudyPlan("grid", step_s=0.1, policies=("never", "always"), **more), tuple(rows))
 
 
-def seeds(count: int, made: Decision, **more: Any) -> list[DriveRow]:
+def seeds(count: int, made: Decision, **more: Any) -> list[TripRow]:
     return [replace(drive(made, seed=seed), trip=f"t{seed % 2}", **more) for seed in range(count)]
 
 

@@ -41,7 +41,7 @@ from automotive_cosim.studies.reroute.page import write_study
 from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.studies.reroute.points import NOT_CLEARED
 from automotive_cosim.studies.reroute.results import Study, load_study
-from automotive_cosim.studies.reroute.rows import NOTHING, DriveRow
+from automotive_cosim.studies.reroute.rows import NOTHING, TripRow
 from automotive_cosim.studies.reroute.tables import policies as policy_table
 from automotive_cosim.studies.reroute.tables import tables
 from automotive_cosim.studies.reroute.tracks import TRACKS
@@ -62,7 +62,7 @@ DAWDLING = """<routes>
 
 
 def steady(folder: Path) -> dict[str, Json]:
-    return {name: steady_part(row) for name, row in read_rows(folder, DriveRow).items()}
+    return {name: steady_part(row) for name, row in read_rows(folder, TripRow).items()}
 
 
 def write_tables(folder: Path) -> None:
@@ -140,14 +140,14 @@ def test_watching_shows_every_drive_and_changes_nothing(plan: StudyPlan, folder:
     watched = tmp_path / "watched"
     with ExitStack() as stack:
 
-        def watch(progress: Progress[DriveRow]) -> None:
+        def watch(progress: Progress[TripRow]) -> None:
             mark_as_written(stack.enter_context((watched / LIVE / WATCHED).open("rb")))
 
         REROUTE.run(replace(plan, seeds=(0,)), watched, tell=watch)
     assert steady(watched)
     assert steady(watched).items() <= steady(folder).items()
     assert not list((folder / LIVE).glob("*/")), "nobody watched that one"
-    decided = [row for row in read_rows(watched, DriveRow).values() if row.decisions]
+    decided = [row for row in read_rows(watched, TripRow).values() if row.decisions]
     assert decided
     for row in decided:
         seconds = read_record(watched / LIVE / row.id / ROAD).seconds
@@ -206,7 +206,7 @@ def test_old_news_offers_nothing_worth_it(folder: Path) -> None:
 
 
 def test_every_future_of_a_decision_says_its_way(folder: Path) -> None:
-    decisions = [each for row in read_rows(folder, DriveRow).values() for each in row.decisions]
+    decisions = [each for row in read_rows(folder, TripRow).values() for each in row.decisions]
     assert decisions
     for decision in decisions:
         stay, *others = decision.ways

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.executor import Executor
     from automotive_cosim.studies.reroute.plan import StudyPlan
     from automotive_cosim.studies.reroute.results import Study
-    from automotive_cosim.studies.reroute.rows import DriveRow
+    from automotive_cosim.studies.reroute.rows import TripRow
 
 
 @takes(RerouteSettings, but=("scenario", "warm_up_s", "limit_s", "agent_steps"))
@@ -104,10 +104,10 @@ def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, me
     from automotive_cosim.studies.reroute.batch import REROUTE
     from automotive_cosim.studies.reroute.demand import measure_demand
     from automotive_cosim.studies.reroute.page import write_study
-    from automotive_cosim.studies.reroute.rows import DriveRow
+    from automotive_cosim.studies.reroute.rows import TripRow
 
-    def said(progress: Progress[DriveRow]) -> str:
-        count = sum(len(row.decisions) for row in read_rows(folder, DriveRow).values())
+    def said(progress: Progress[TripRow]) -> str:
+        count = sum(len(row.decisions) for row in read_rows(folder, TripRow).values())
         errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
         return f"{counted(count, 'decision')}{errors}"
 

@@ -21,7 +21,7 @@ from automotive_cosim.studies.reroute.drive import run_drive
 from automotive_cosim.studies.reroute.plan import StudyJob, StudyPlan
 from automotive_cosim.studies.reroute.policies import PolicyRule
 from automotive_cosim.studies.reroute.results import choices
-from automotive_cosim.studies.reroute.rows import DriveRow
+from automotive_cosim.studies.reroute.rows import TripRow
 from automotive_cosim.studies.reroute.tracks import TRACKS
 from automotive_cosim.traffic.fork import Forked
 
@@ -29,7 +29,7 @@ STRIDE = 5
 """Seeds added at a time once there are enough for an interval."""
 
 
-def rounds(plan: StudyPlan, store: Store[DriveRow]) -> Iterator[Sequence[StudyJob]]:
+def rounds(plan: StudyPlan, store: Store[TripRow]) -> Iterator[Sequence[StudyJob]]:
     """The drives of all seeds; with a stopping rule, of some more until the interval is narrow enough."""
     if not (watched := store.folder / LIVE / WATCHED).exists():  # it stays what the pages have locked
         write_whole(watched, b"")
@@ -46,7 +46,7 @@ def _counts(plan: StudyPlan) -> Iterator[int]:
     yield len(plan.seeds)
 
 
-def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
+def _is_narrow(plan: StudyPlan, rows: Sequence[TripRow]) -> bool:
     """Whether the mean gain of ``always`` is known precisely enough."""
     always = choices(rows, (PolicyRule.ALWAYS,), plan.compliance[0])
     found = [each for each in always if each.age_s == plan.ages_s[0]]
@@ -57,7 +57,7 @@ def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
 
 
 @contextmanager
-def drives() -> Iterator[Runner[StudyJob, DriveRow]]:
+def drives() -> Iterator[Runner[StudyJob, TripRow]]:
     """Makes the runner of the drives in a worker."""
     with closing(_Warm()) as warm:
         yield tried(warm.run)
@@ -72,7 +72,7 @@ class _Warm:
         self._now_s = 0.0
         self._measured: list[TrafficSummary] = []
 
-    def run(self, job: StudyJob, folder: Path) -> DriveRow:
+    def run(self, job: StudyJob, folder: Path) -> TripRow:
         """Runs a drive; tracks, if wanted, and what is watched are also kept."""
         try:
             return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None, folder)
@@ -118,4 +118,4 @@ class _Warm:
         return self._simulation, tuple(self._measured)
 
 
-REROUTE = BatchKind(DriveRow, drives, (LIVE,), rounds=rounds)
+REROUTE = BatchKind(TripRow, drives, (LIVE,), rounds=rounds)

@@ -32,7 +32,7 @@ from automotive_cosim.studies.reroute.live import LiveDrive
 from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import Diverted, Point, Shut, compared
 from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy
-from automotive_cosim.studies.reroute.rows import Decision, DriveRow, News
+from automotive_cosim.studies.reroute.rows import Decision, News, TripRow
 from automotive_cosim.studies.reroute.tracks import write_tracks
 from automotive_cosim.studies.reroute.whole import whole_drives
 from automotive_cosim.traffic.base import EgoPlan
@@ -60,7 +60,7 @@ def run_drive(
     history: Sequence[TrafficSummary],
     tracks: Path | None = None,
     study: Path | None = None,
-) -> DriveRow:
+) -> TripRow:
     """Runs a drive, branches at every decision point, and compares the futures.
 
     Args:

@@ -14,7 +14,7 @@ from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.studies.plan import check_edges, check_values, driven_at, opened
 from automotive_cosim.studies.reroute.policies import AGENT, parse_policy
-from automotive_cosim.studies.reroute.rows import DriveRow
+from automotive_cosim.studies.reroute.rows import TripRow
 from automotive_cosim.studies.settings import RerouteSettings
 from automotive_cosim.traffic.profiles import profile
 
@@ -156,9 +156,9 @@ class StudyJob(Job):
         name = re.sub(r"[^A-Za-z0-9_.]+", "_", self.trip.name)
         return f"share{self.share:g}-seed{self.seed}-at{self.departure_s:g}-{name}"
 
-    def planned(self) -> DriveRow:
+    def planned(self) -> TripRow:
         """Its row before it runs."""
-        return DriveRow(
+        return TripRow(
             id=self.id,
             scenario=self.plan.scenario,
             share=self.share,

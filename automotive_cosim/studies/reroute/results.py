@@ -20,10 +20,10 @@ from automotive_cosim.studies.reroute.rows import (
     NOBODY,
     Decision,
     DecisionPoint,
-    DriveRow,
     News,
     PolicyChoice,
     Totals,
+    TripRow,
 )
 
 if TYPE_CHECKING:
@@ -34,11 +34,11 @@ NOISE = 0.95
 
 
 @dataclass(frozen=True)
-class Study(StudyContent[StudyPlan, DriveRow]):
+class Study(StudyContent[StudyPlan, TripRow]):
     """The content of a rerouting study's folder, with a row per drive."""
 
     plan_type = StudyPlan
-    row_type = DriveRow
+    row_type = TripRow
 
     @property
     def planned(self) -> int:
@@ -113,14 +113,14 @@ def load_study(folder: Path | str) -> pd.DataFrame:
     return pd.DataFrame([columns(choice) for choice in Study.read(Path(folder)).all_choices])
 
 
-def all_decisions(rows: Iterable[DriveRow]) -> Iterator[DecisionPoint]:
+def all_decisions(rows: Iterable[TripRow]) -> Iterator[DecisionPoint]:
     """The decisions of every drive, including those that do not count."""
     for row in rows:
         for number, decision in enumerate(row.decisions):
             yield DecisionPoint(f"{row.id}-{number}", row, decision)
 
 
-def choices(rows: Iterable[DriveRow], policies: Sequence[str], compliance: float = 1.0) -> Iterator[PolicyChoice]:
+def choices(rows: Iterable[TripRow], policies: Sequence[str], compliance: float = 1.0) -> Iterator[PolicyChoice]:
     """The choice of each policy at each decision that counts, with news of each age, and its gain."""
     for point in all_decisions(rows):
         if not point.decision.excluded:

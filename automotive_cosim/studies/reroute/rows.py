@@ -337,7 +337,7 @@ class WholeDrive:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DriveRow(JobRow):
+class TripRow(JobRow):
     """One drive of a study."""
 
     scenario: str
@@ -393,7 +393,7 @@ class DecisionPoint:
     """A decision with its drive."""
 
     id: str
-    drive: DriveRow
+    drive: TripRow
     decision: Decision
 
     @property
