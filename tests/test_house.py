@@ -56,8 +56,8 @@ CEILINGS = {
     "studies": (12639, 113, 92),
     "tasking": (5680, 124, 0),
     "tasks": (15, 0, 0),
-    "tests": (61810, 123, 0),
-    "traffic": (11350, 76, 0),
+    "tests": (61812, 123, 0),
+    "traffic": (11351, 76, 0),
     "beside them": (299, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
