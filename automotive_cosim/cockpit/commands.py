@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -14,6 +14,21 @@ from automotive_cosim.contracts.text import say
 
 LOOKING = frozenset({"questions", "messages.read"})
 """Commands that change nothing: to ask, and to have a message read out."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimpleCommand(Command):
+    """A command that has nothing to say but that it is given."""
+
+    effect: Callable[[State], Feedback]
+    aimed: tuple[str, ...]
+    """What it aims at, in every state."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        return frozenset(self.aimed)
+
+    def perform(self, state: State) -> Feedback:
+        return self.effect(state)
 
 
 @dataclass(frozen=True, slots=True)

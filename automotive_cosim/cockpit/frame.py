@@ -8,7 +8,7 @@ from typing import Any
 
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.notifications import wanting
-from automotive_cosim.cockpit.apps.phone.commands import DeclineCall, TakeCall
+from automotive_cosim.cockpit.apps.phone.commands import DECLINE_CALL, TAKE_CALL
 from automotive_cosim.cockpit.apps.phone.state import Phone
 from automotive_cosim.cockpit.apps.settings.state import wifi
 from automotive_cosim.cockpit.cards import stepper
@@ -194,7 +194,7 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
             description=say("Answer the call"),
             icon=Icon.PHONE,
             look=Look.ACCENT,
-            on_tap=TakeCall(),
+            on_tap=TAKE_CALL,
         ),
         Button(
             rect=decline,
@@ -202,7 +202,7 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
             description=say("Decline the call"),
             icon=Icon.HANG_UP,
             look=Look.CRITICAL,
-            on_tap=DeclineCall(),
+            on_tap=DECLINE_CALL,
         ),
         Button(
             rect=message,

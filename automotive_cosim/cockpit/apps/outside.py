@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.climate.screens import glass_words
 from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
-from automotive_cosim.cockpit.apps.vehicle.commands import Wash
+from automotive_cosim.cockpit.apps.vehicle.commands import WASH
 from automotive_cosim.cockpit.cards import content, heading
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.controls import CONTROLS
@@ -305,7 +305,7 @@ def _detail(known: Phenomenon, state: State) -> Block:
         look=Look.ACCENT,
         on_tap=WarnDriver(Alert(known.alert)),
     )
-    wash = Button(key="outside.wash", text=say("Wash the windshield"), icon=Icon.WASHER, on_tap=Wash())
+    wash = Button(key="outside.wash", text=say("Wash the windshield"), icon=Icon.WASHER, on_tap=WASH)
     picture = Glyph(icon=known.icon, size=88, tone="warning" if bad else "accent")
     acts = [_act(act, state) for act in known.acts]
     return card(

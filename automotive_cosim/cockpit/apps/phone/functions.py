@@ -6,13 +6,13 @@ from dataclasses import replace
 from typing import Annotated
 
 from automotive_cosim.cockpit.apps.phone.commands import (
+    DECLINE_CALL,
+    HANG_UP,
     NOBODY_CALLS,
-    DeclineCall,
+    TAKE_CALL,
     Dial,
-    HangUp,
     Read,
     SendReply,
-    TakeCall,
 )
 from automotive_cosim.cockpit.apps.phone.figure import SENTENCES
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phone
@@ -58,11 +58,11 @@ def handle_call(
     phone = state.of(Phone)
     match act:
         case "answer":
-            return TakeCall() if phone.ringing else NOBODY_CALLS
+            return TAKE_CALL if phone.ringing else NOBODY_CALLS
         case "decline":
-            return DeclineCall() if phone.ringing else NOBODY_CALLS
+            return DECLINE_CALL if phone.ringing else NOBODY_CALLS
         case "hang_up":
-            return HangUp()
+            return HANG_UP
         case _:
             if phone.on_call is None:
                 return Feedback(FeedbackCode.NO_EFFECT, say("there is no call"))

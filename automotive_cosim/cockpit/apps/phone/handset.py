@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.phone.commands import DeclineCall, HangUp, TakeCall
+from automotive_cosim.cockpit.apps.phone.commands import DECLINE_CALL, HANG_UP, TAKE_CALL
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.apps.settings.state import Connections
 from automotive_cosim.cockpit.cards import content
@@ -106,7 +106,7 @@ def _on_call(state: State) -> Block:
             say("The microphone is on") if call.muted else say("The microphone is off"),
         ),
     )
-    end = _act("call.end", say("End"), Icon.HANG_UP, Look.CRITICAL, HangUp())
+    end = _act("call.end", say("End"), Icon.HANG_UP, Look.CRITICAL, HANG_UP)
     return _call(
         Icon.IN_CALL,
         "good",
@@ -117,8 +117,8 @@ def _on_call(state: State) -> Block:
 
 
 def _ringing(who: str) -> Block:
-    answer = _act("phone.answer", say_in("call", "Answer"), Icon.PHONE, Look.ACCENT, TakeCall())
-    decline = _act("phone.decline", say("Decline"), Icon.HANG_UP, Look.CRITICAL, DeclineCall())
+    answer = _act("phone.answer", say_in("call", "Answer"), Icon.PHONE, Look.ACCENT, TAKE_CALL)
+    decline = _act("phone.decline", say("Decline"), Icon.HANG_UP, Look.CRITICAL, DECLINE_CALL)
     return _call(
         Icon.CALL_IN,
         "good",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.apps.vehicle.commands import Honk
+from automotive_cosim.cockpit.apps.vehicle.commands import HONK
 from automotive_cosim.cockpit.apps.vehicle.screens import page
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, CarMemory
 from automotive_cosim.cockpit.camera import scene
@@ -45,7 +45,7 @@ def driving(state: State) -> tuple[Widget, ...]:
         10,
         switch(DRIVE.PARKING_BRAKE, state),
         switch(DRIVE.PARKING_BRAKE_AUTO, state),
-        Button(key="drive.horn", text=say("Horn"), icon=Icon.WARN, on_tap=Honk()),
+        Button(key="drive.horn", text=say("Horn"), icon=Icon.WARN, on_tap=HONK),
         framed(washer, look="none"),
     )
     hold = card(heading(say("Brake and horn")), 8, (REST, tiles), padding=SMALL)
