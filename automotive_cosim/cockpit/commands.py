@@ -39,7 +39,6 @@ class Set(Command):
     value: Any
 
     def aims(self, state: State) -> frozenset[str]:
-        """The signal."""
         return frozenset({self.signal.path})
 
     def perform(self, state: State) -> Feedback:
@@ -69,7 +68,6 @@ class SetAll(Command):
     said: str
 
     def aims(self, state: State) -> frozenset[str]:
-        """The signals."""
         return frozenset(signal.path for signal, _ in self.values)
 
     def perform(self, state: State) -> Feedback:
@@ -92,7 +90,6 @@ class Put(Command):
 
     @property
     def prepares(self) -> bool:
-        """Whether it is a draft."""
         return self.data.prepares
 
     def aims(self, state: State) -> frozenset[str]:
@@ -110,7 +107,6 @@ class Put(Command):
         }
 
     def perform(self, state: State) -> Feedback:
-        """The new data."""
         return state.change(self.data, self.said)
 
     def repeat(self, state: State, record: CommandRecord, keys: Collection[str]) -> None:
@@ -138,7 +134,6 @@ class AskDriver(Command):
     text: str
 
     def aims(self, state: State) -> frozenset[str]:
-        """The questions."""
         return frozenset({"questions"})
 
     def perform(self, state: State) -> Feedback:

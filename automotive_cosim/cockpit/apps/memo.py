@@ -50,13 +50,7 @@ def _record(state: State) -> Feedback:
     return Feedback(FeedbackCode.OK, say("{memo} is kept", memo=memo))
 
 
-RECORD = SimpleCommand(
-    _record,
-    (
-        "apps.memos",
-        "apps.recording",
-    ),
-)
+RECORD = SimpleCommand(_record, ("apps.memos", "apps.recording"))
 
 
 def memo(state: State) -> tuple[Widget, ...]:
@@ -139,9 +133,6 @@ def delete_memo(state: State, memo: Annotated[str, "The memo, as the screen memo
     return Put(replace(memos, kept=(*memos.kept[:at], *memos.kept[at + 1 :])), "")
 
 
-FUNCTIONS = (record_memo, delete_memo)
-
-
 APP = App(
     name="memo",
     title=say("Memos"),
@@ -149,7 +140,7 @@ APP = App(
     order=14,
     where=Where.STORE,
     about=say("Spoken notes"),
-    functions=FUNCTIONS,
+    functions=(record_memo, delete_memo),
     pages={"memo": AppPage(memo), "note": AppPage(memo_note, Room.ONE)},
     aliases={"memos": ""},
     starts=lambda state, rng: (Memos(),),

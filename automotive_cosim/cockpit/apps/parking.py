@@ -161,9 +161,6 @@ def pay_parking(state: State) -> CallMade:
     return PAY
 
 
-FUNCTIONS = (set_parking_zone, set_parking_time, pay_parking)
-
-
 APP = App(
     name="parking",
     title=say("Parking"),
@@ -171,7 +168,7 @@ APP = App(
     order=12,
     where=Where.STORE,
     about=say("Pay for a parking space from the car"),
-    functions=FUNCTIONS,
+    functions=(set_parking_zone, set_parking_time, pay_parking),
     pages={"parking": AppPage(parking)},
     starts=lambda state, rng: (Parking(),),
 )

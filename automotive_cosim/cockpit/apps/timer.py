@@ -148,9 +148,6 @@ def run_timer(state: State, on: Annotated[bool, "True starts it, false stops it.
     return START_TIMER if on else STOP_TIMER
 
 
-FUNCTIONS = (set_timer, run_timer)
-
-
 APP = App(
     name="timer",
     title=say("Timer"),
@@ -159,7 +156,7 @@ APP = App(
     where=Where.STORE,
     about=say("Counts down minutes and alerts you"),
     preinstalled=False,
-    functions=FUNCTIONS,
+    functions=(set_timer, run_timer),
     pages={"timer": AppPage(timer, Room.ONE)},
     starts=lambda state, rng: (Countdown(),),
 )

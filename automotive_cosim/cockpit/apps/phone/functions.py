@@ -17,15 +17,7 @@ from automotive_cosim.cockpit.apps.phone.commands import (
 from automotive_cosim.cockpit.apps.phone.figure import SENTENCES
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phone
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import (
-    CLOCK,
-    CallMade,
-    disabled,
-    locked,
-    minute_of,
-    named,
-    offered,
-)
+from automotive_cosim.cockpit.functions import CLOCK, CallMade, disabled, locked, minute_of, named, offered
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import Feedback, FeedbackCode
@@ -153,12 +145,4 @@ def _found(state: State, name: str) -> str | Feedback:
     return locked(state, Restriction.LIMIT_CONTENT) or other
 
 
-FUNCTIONS = (
-    call,
-    handle_call,
-    send_message,
-    send_figure,
-    read_messages,
-    favourite_contact,
-    do_not_disturb,
-)
+FUNCTIONS = (call, handle_call, send_message, send_figure, read_messages, favourite_contact, do_not_disturb)

@@ -27,11 +27,7 @@ SEVERITIES: dict[Severity, tuple[str, Icon]] = {
     Severity.WARNING: (say("Warning"), Icon.WARNING),
     Severity.CRITICAL: (say("Critical"), Icon.CRITICAL),
 }
-_URGENT = {
-    Severity.INFO: say("info"),
-    Severity.WARNING: say("warning"),
-    Severity.CRITICAL: say("critical"),
-}
+_URGENT = {Severity.INFO: say("info"), Severity.WARNING: say("warning"), Severity.CRITICAL: say("critical")}
 """A severity within a line."""
 SLOWEST_KMH, FASTEST_KMH, STEP_KMH = 10.0, 180.0, 10.0
 
