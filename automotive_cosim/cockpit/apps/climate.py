@@ -104,8 +104,7 @@ def _zone(who: str, name: str, warmth: Signal[float], seat: Signal[float], third
         style=Type.DISPLAY,
         align="centre",
     )
-    steps = stepper(warmth, state.signals)
-    steps.parts = (steps.parts[0], None, None, steps.parts[-1])  # the value stands above it, larger
+    steps = stepper(warmth, state.signals, bare=True)
     tiles = grid(
         1,
         10,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.phone.commands import DECLINE_CALL, HANG_UP, TAKE_CALL
-from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
+from automotive_cosim.cockpit.apps.phone.state import Directory, OnCall, Phone
 from automotive_cosim.cockpit.apps.settings.state import Connections
 from automotive_cosim.cockpit.cards import content
 from automotive_cosim.cockpit.commands import Put
@@ -47,7 +47,13 @@ def _handset(state: State) -> BlockPart:
         look=Look.CRITICAL,
         on_tap=Show("emergency"),
     )
-    call = _ringing(phone.ringing.who) if phone.ringing else _on_call(state) if phone.on_call else _linked(state)
+    call = (
+        _ringing(phone.ringing.who)
+        if phone.ringing
+        else _on_call(phone, phone.on_call, state)
+        if phone.on_call
+        else _linked(state)
+    )
 
     def divide(box: Rect) -> tuple[Rect, ...]:
         """The buttons stand side by side where there is the room."""
@@ -92,10 +98,7 @@ def _linked(state: State) -> Block:
     )
 
 
-def _on_call(state: State) -> Block:
-    phone = state.of(Phone)
-    call = phone.on_call
-    assert call is not None
+def _on_call(phone: Phone, call: OnCall, state: State) -> Block:
     mute = Tile(
         key="call.mute",
         text=say("Mute"),
