@@ -16,6 +16,7 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
+from copy import deepcopy
 from dataclasses import asdict, dataclass, field, replace
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -44,8 +45,8 @@ from automotive_cosim.drives.driver import driver_events
 from automotive_cosim.drives.events import KINDS, DriveAct
 from automotive_cosim.drives.followed import followed
 from automotive_cosim.drives.harm import distraction_s, harm
-from automotive_cosim.drives.judge import JudgedAct, Worth, facts_of, judge
-from automotive_cosim.drives.score import score
+from automotive_cosim.drives.judge import BACK, EventOutcome, JudgedAct, Worth, facts_of, judge
+from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.counterfactual import counterfactual
 from automotive_cosim.episode.episode import Episode
@@ -102,9 +103,9 @@ class ActEffect:
     came: str = ""
     """What became of it: the driver's answer, and what the car then did."""
     verdict: str = ""
-    """How the verdict would be another without it; empty if it would not."""
+    """How the verdict, or on a drive what became of events, would be another without it; empty if it would not."""
     points: float | None = None
-    """On a drive, points of the score that the judge gives for it, or takes."""
+    """On a drive, how many points of the score it brought, or cost."""
     glance_s: float = 0.0
     """For how long it took the driver's eyes off the road."""
     changed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -141,7 +142,7 @@ def _said(name: str, difference: float, noise: float) -> str:
 
 
 def attribute(folder: Path, trial: str = "", only: Collection[int] | None = None) -> list[ActEffect]:
-    """Measures what each act of a stored trial changed.
+    """Measures what each act of a stored trial changed, and keeps it (``path_of``) unless it was asked for some.
 
     Args:
         folder: an evaluation's, a search's, or that of a single trial.
@@ -160,23 +161,21 @@ def attribute(folder: Path, trial: str = "", only: Collection[int] | None = None
         again = compare(stored, [line for line in record.lines if "step" in line])
         if wrong := next((step for step in again if step.differs), None):
             raise InfrastructureError(
-                f"step {wrong.number} differs from the record in {', '.join(wrong.differs)}; nothing can be said of "
-                "the acts of a trial that does not repeat"
+                f"step {wrong.number} differs from the record in {', '.join(wrong.differs)}; nothing can be said "
+                "of the acts of a trial that does not repeat"
             )
         if only is not None:
             return [forks.without(only)]
-        return forks.effects()
+        found = forks.effects()
+    path = path_of(folder, job.id)
+    make_folder(path.parent)
+    write_whole(path, json.dumps({"acts": [asdict(each) for each in found]}, indent=1) + "\n")
+    return found
 
 
 def path_of(folder: Path, trial: str = "") -> Path:
-    """Where the effects of a trial's acts are kept."""
+    """Where the effects of a trial's acts are kept: in its folder, or that of its evaluation."""
     return folder / FILE if is_trial(folder) else folder / "attribution" / f"{trial}.json"
-
-
-def write_effects(path: Path, effects: Sequence[ActEffect]) -> None:
-    """Keeps the effects of a trial's acts."""
-    make_folder(path.parent)
-    write_whole(path, json.dumps({"acts": [asdict(each) for each in effects]}, indent=1) + "\n")
 
 
 def read_effects(path: Path) -> list[ActEffect]:
@@ -216,6 +215,8 @@ class _Fork:
     """Number of its moment."""
     given: int
     """Number of commands before it."""
+    tracker: Any
+    """Of a drive, its events so far; None of a task."""
 
 
 class Forks(TrialObserver[Any, Any]):
@@ -279,7 +280,8 @@ class Forks(TrialObserver[Any, Any]):
     def _fork(self) -> None:
         world = self._session.world.branch()
         self._ends.callback(world.close)
-        self._forks.append(_Fork(world, len(self.moments) - 1, len(self._session.world.cockpit.given)))
+        tracker = deepcopy(getattr(self._session, "tracker", None))
+        self._forks.append(_Fork(world, len(self.moments) - 1, len(self._session.world.cockpit.given), tracker))
 
     # --- afterwards ---------------------------------------------------------------------------------------
 
@@ -312,12 +314,12 @@ class Forks(TrialObserver[Any, Any]):
             round(left[0].time_s - begun_s, 1),
             " and ".join(act.words for act in left),
             came="; ".join(filter(None, map(self._came, left))),
-            points=self._points(left),
             glance_s=round(sum(distraction_s(act.acts, [act.text]) for act in left), 1),
         )
         both = [self._compared(left, 0)]
         if not any(_differ(name, *pair) for name, pair in both[0].items()):
-            return replace(told, verdict=self._verdict(left, [0]))
+            points, verdict = self._judged(left, [0])
+            return replace(told, points=points, verdict=verdict)
         both += [self._compared(left, draw) for draw in range(1, redraws + 1)]
         changed: dict[str, tuple[float, float]] = {}
         chance: dict[str, tuple[float, float]] = {}
@@ -328,13 +330,8 @@ class Forks(TrialObserver[Any, Any]):
                 first, middle = pairs[0][0] - pairs[0][1], median(one - other for one, other in pairs)
                 is_one = abs(middle) > max(noise, FIGURES[name][2]) and middle * first > 0
                 (changed if is_one else chance)[name] = (middle if is_one else first), noise
-        return replace(
-            told,
-            verdict=self._verdict(left, range(len(both))),
-            changed=changed,
-            chance=chance,
-            draws=len(both),
-        )
+        points, verdict = self._judged(left, range(len(both)))
+        return replace(told, points=points, verdict=verdict, changed=changed, chance=chance, draws=len(both))
 
     def _compared(self, left: Sequence[_Act], draw: int) -> dict[str, tuple[float, float]]:
         """Every figure, with the acts and without them."""
@@ -403,21 +400,55 @@ class Forks(TrialObserver[Any, Any]):
 
     # --- the judge ----------------------------------------------------------------------------------------
 
-    def _points(self, left: Sequence[_Act]) -> float | None:
-        """What the judge of a drive gives for acts: the score with them less that without, on the same road."""
+    def _judged(self, left: Sequence[_Act], draws: Collection[int]) -> tuple[float | None, str]:
+        """On a drive, the points for acts in the middle of these draws, and which events came out otherwise."""
         session = self._session
         if not isinstance(session, DriveSession):
-            return None
+            return None, self._verdict(left, draws)
         gone = {(round(each.time_s, 3), each.words) for act in left for each in act.acts}
-        against = facts_of(session.moments)
-
-        def value(acts: Sequence[DriveAct]) -> float:
-            commands, untouched = session.moments[0].commands, session.untouched
-            found = judge(KINDS, session.events, acts, session.due_anyway, against, commands, untouched)
-            return score(found, session.seconds).value
-
         kept = [act for act in session.acts if (round(act.time_s, 3), act.words) not in gone]
-        return round(value(session.acts) - value(kept), 1)
+        found = []
+        for draw in draws:
+            mine, others = self._both(left, draw)
+            found.append((self._watch(left[0].fork, mine, session.acts), self._watch(left[0].fork, others, kept)))
+        gains = [one[0] - other[0] for one, other in found]
+        assert session.judgement is not None
+        worth = score(session.judgement, session.seconds).worth or LEAST_WORTH
+        points = round(100 * median(gains) / (2 * worth), 1)
+        if points * gains[0] <= 0:
+            return 0.0, ""
+        one, other = (dict(each) for _, each in found[0])
+        changed = [event for event in {**one, **other} if one.get(event) != other.get(event)]
+        told = [f"{kind}: {one.get(kind, 'not due')}, without it {other.get(kind, 'not due')}" for kind in changed]
+        return points, ", ".join(told)
+
+    def _watch(
+        self, fork: _Fork, moments: Sequence[Moment], acts: Sequence[DriveAct]
+    ) -> tuple[float, Mapping[str, str]]:
+        """What acts are worth on a drive that went on so from a fork, in weights of events, and what became of each
+        kind of event."""
+        session, tracker = self._session, deepcopy(fork.tracker)
+        drive = [*self.moments[: fork.at], *moments]
+        for count in range(fork.at + 2, len(drive) + 1):
+            tracker.see(drive[max(0, count - BACK) : count])
+        anyway = {
+            (event.kind, event.subject, event.observable_s): session.due_anyway.get(number)
+            for number, event in enumerate(session.events)
+        }
+        due = {
+            number: anyway.get((event.kind, event.subject, event.observable_s))
+            for number, event in enumerate(tracker.events)
+        }
+        done = [act for act in acts if act.time_s <= drive[-1].time_s]
+        commands, untouched = session.moments[0].commands, session.untouched
+        found = judge(KINDS, tracker.events, done, due, facts_of(drive), commands, untouched)
+        since = drive[fork.at].time_s
+        became = {
+            event.kind.replace("_", " "): str(event.outcome)
+            for event in found.events
+            if event.ends_s >= since and (event.outcome.counts or event.outcome is EventOutcome.TAKEN)
+        }
+        return score(found, session.seconds).utility, became
 
     def _verdict(self, left: Sequence[_Act], draws: Collection[int]) -> str:
         """How the verdict of a task is another without acts, in most draws; empty if it is not."""
