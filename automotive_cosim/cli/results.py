@@ -91,7 +91,8 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
         print_json({"acts": [asdict(each) | {"effect": each.effect} for each in effects]})
         return
     for each in effects:
-        typer.echo(f"step {' and '.join(map(str, each.steps))}, {clock(each.at_s)}  {each.act}")
+        step = f"step {' and '.join(map(str, each.steps))}, " if each.steps else ""
+        typer.echo(f"{step}{clock(each.at_s)}  {each.act}")
         if each.came:
             typer.echo(f"    driver: {each.came}")
         typer.echo(f"    effect: {each.effect}")

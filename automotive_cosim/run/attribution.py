@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, contextmanager
 from copy import deepcopy
 from dataclasses import asdict, dataclass, field, replace
 from itertools import combinations, pairwise
@@ -43,9 +43,11 @@ from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, spoken
 from automotive_cosim.drives.driver import driver_events
 from automotive_cosim.drives.events import KINDS, DriveAct
+from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.followed import followed
 from automotive_cosim.drives.harm import distraction_s, harm
 from automotive_cosim.drives.judge import BACK, EventOutcome, JudgedAct, Worth, facts_of, judge
+from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.counterfactual import counterfactual
@@ -58,7 +60,7 @@ from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.run.harm import drive_figures
 from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.rerun import Player, compare, played, recorded
+from automotive_cosim.run.rerun import Player, Recorded, compare, played, recorded
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.trial_folder import is_trial
 from automotive_cosim.tasking.verdict import PARTS
@@ -77,6 +79,8 @@ FIGURES: Mapping[str, tuple[str, str, float]] = {
     "energy_wh": ("energy", "Wh", 5.0),
 }
 """What an act may change: its name, its unit, and up to what a difference is none."""
+NO_ACT, LACKING = "no act", frozenset({"goal", "in_time", "declared"})
+"""In place of an act that is missing; the parts of a verdict that fail for want of one."""
 FAR_S = 20.0
 """A time to collision above it is no approach."""
 REDRAWS = 4
@@ -95,7 +99,7 @@ class ActEffect:
     """What leaving out an act, or two together, changed. A difference is with minus without."""
 
     steps: tuple[int, ...]
-    """Their numbers in the trace."""
+    """Their numbers in the trace; none of an act that is missing."""
     at_s: float
     """Seconds since the beginning of the trial, of the first."""
     act: str
@@ -141,7 +145,13 @@ def _said(name: str, difference: float, noise: float) -> str:
     return f"{difference:+.3g} {unit} {what}{beside}".replace("-", "−")
 
 
-def attribute(folder: Path, trial: str = "", only: Collection[int] | None = None) -> list[ActEffect]:
+def attribute(
+    folder: Path,
+    trial: str = "",
+    only: Collection[int] | None = None,
+    *,
+    simulations: Simulations | None = None,
+) -> list[ActEffect]:
     """Measures what each act of a stored trial changed, and keeps it (``path_of``) unless it was asked for some.
 
     Args:
@@ -149,13 +159,28 @@ def attribute(folder: Path, trial: str = "", only: Collection[int] | None = None
         trial: an id of the evaluation, or its unique beginning; a single trial needs none.
         only: numbers of steps, which are left out together; by default each act by itself, then those pairs that
             change nothing alone.
+        simulations: warm simulations to use; by default its own.
 
     Raises:
         UserError: no such trial or act, or its trace cannot be read.
         InfrastructureError: the simulation failed, or does not repeat the trial.
     """
-    job, stored, channels, failure = recorded(folder, trial)
-    with closing(Simulations()) as simulations, closing(Forks(job.setup.seed)) as forks:
+    stored = recorded(folder, trial)
+    with ExitStack() as ends, forked(stored, simulations or ends.enter_context(closing(Simulations()))) as forks:
+        if only is not None:
+            return [forks.without(only)]
+        found = forks.effects() + forks.missing()
+    path = path_of(folder, stored[0].id)
+    make_folder(path.parent)
+    write_whole(path, json.dumps({"acts": [asdict(each) for each in found]}, indent=1) + "\n")
+    return found
+
+
+@contextmanager
+def forked(trial: Recorded, simulations: Simulations) -> Iterator[Forks]:
+    """A stored trial, played again, with a fork from before each of its acts; arguments and errors as above."""
+    job, stored, channels, failure = trial
+    with closing(Forks(job.setup.seed)) as forks:
         player = _Forking(stored[1:], channels, failure, forks)
         record = played(job, stored, channels, failure, simulations=simulations, observers=(forks,), player=player)
         again = compare(stored, [line for line in record.lines if "step" in line])
@@ -164,13 +189,7 @@ def attribute(folder: Path, trial: str = "", only: Collection[int] | None = None
                 f"step {wrong.number} differs from the record in {', '.join(wrong.differs)}; nothing can be said "
                 "of the acts of a trial that does not repeat"
             )
-        if only is not None:
-            return [forks.without(only)]
-        found = forks.effects()
-    path = path_of(folder, job.id)
-    make_folder(path.parent)
-    write_whole(path, json.dumps({"acts": [asdict(each) for each in found]}, indent=1) + "\n")
-    return found
+        yield forks
 
 
 def path_of(folder: Path, trial: str = "") -> Path:
@@ -296,6 +315,25 @@ class Forks(TrialObserver[Any, Any]):
         together = (self.without([act.step for act in pair]) for pair in near[:MOST_PAIRS])
         return found + [effect for effect in together if not effect.is_neutral]
 
+    def missing(self) -> list[ActEffect]:
+        """What went wrong because nobody acted: events that were missed, or parts of the verdict that failed."""
+        session = self._session
+        if isinstance(session, Episode):
+            parts = {} if session.verdict is None else session.verdict.parts
+            end_s = round(session.seconds, 1)
+            return [
+                ActEffect((), end_s, NO_ACT, verdict=f"{name.replace('_', ' ')}: {part.why}")
+                for name, part in parts.items()
+                if not part.ok and name in LACKING
+            ]
+        assert session.judgement is not None
+        events, acts, _ = judged_since(session.judgement, self.moments[0].time_s, session.seconds)
+        return [
+            ActEffect((), fault.time_s, NO_ACT, verdict=f"missed {fault.about}: {fault.why}")
+            for fault in faults(events, acts)
+            if fault.what == EventOutcome.MISSED
+        ]
+
     def without(self, steps: Collection[int], redraws: int = REDRAWS) -> ActEffect:
         """What leaving out these acts changed.
 
@@ -418,8 +456,10 @@ class Forks(TrialObserver[Any, Any]):
         if points * gains[0] <= 0:
             return 0.0, ""
         one, other = (dict(each) for _, each in found[0])
-        changed = [event for event in {**one, **other} if one.get(event) != other.get(event)]
-        told = [f"{kind}: {one.get(kind, 'not due')}, without it {other.get(kind, 'not due')}" for kind in changed]
+        told = []
+        for kind in [kind for kind in {**one, **other} if one.get(kind) != other.get(kind)]:
+            alone = "left alone" if one.get(kind) == EventOutcome.TAKEN else "not due"
+            told.append(f"{kind}: {one.get(kind, 'not due')}, without it {other.get(kind, alone)}")
         return points, ", ".join(told)
 
     def _watch(
