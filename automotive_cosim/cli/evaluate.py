@@ -136,7 +136,7 @@ def evaluate(
             console.print(f"  {line}", soft_wrap=True, markup=False)
         for row in errors:
             console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)
-        extra = "" if is_installed() else f", which needs {install_hint('report')}"
+        extra = "" if is_installed() else f", which needs {install_hint('reports')}"
         console.print(
             f"Results in {folder} ({megabytes_in_words(size_mb)}); "
             f"write report.html with `automotive-cosim report {folder}`{extra}",

@@ -4,7 +4,7 @@
 Its models get a tool ``act``, a tool for each function of the car, or both, and after each action the screen as
 text and picture. What the road breaks is an error of the sample; what a limit of Inspect's cuts short is judged as
 it is. Needs the package ``inspect-ai``
-(extra ``inspect``).
+(extra ``harnesses``).
 """
 
 # pyright: reportMissingImports=false

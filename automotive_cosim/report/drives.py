@@ -491,7 +491,7 @@ def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, Chart]:
     Raises:
         OSError: they cannot be written.
         UserError: a trace cannot be read.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     plots: dict[str, Chart] = {}
     for row in sorted(rows, key=lambda row: (row.value is None, row.value or 0.0)):

@@ -48,7 +48,7 @@ def write_report(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not an evaluation's, has no episodes yet, or cannot be written.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     require_plots()
     results = read_results(folder)

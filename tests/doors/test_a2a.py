@@ -18,7 +18,7 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("a2a", reason="the extra a2a is not installed")
+pytest.importorskip("a2a", reason="the extra doors is not installed")
 import httpx
 import uvicorn
 from a2a.client import ClientConfig, ClientFactory

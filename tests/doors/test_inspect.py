@@ -24,7 +24,7 @@ from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
-pytest.importorskip("inspect_ai", reason="the extra inspect is not installed")
+pytest.importorskip("inspect_ai", reason="the extra harnesses is not installed")
 from inspect_ai import Task
 from inspect_ai import eval as evaluate
 from inspect_ai.log import EvalLog

@@ -26,7 +26,7 @@ from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
-pytest.importorskip("mcp", reason="the extra mcp is not installed")
+pytest.importorskip("mcp", reason="the extra doors is not installed")
 import anyio
 from mcp import Client, StdioServerParameters, stdio_client
 

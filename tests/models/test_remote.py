@@ -666,7 +666,7 @@ def test_wrong_settings_are_told(server, query, said):
 
 def test_without_the_package_it_says_what_to_install(server, monkeypatch):
     monkeypatch.setitem(sys.modules, "httpx2", None)
-    with pytest.raises(SetupError, match=re.escape(install_hint("llm"))):
+    with pytest.raises(SetupError, match=re.escape(install_hint("models"))):
         make_model("local/m")
 
 

@@ -41,7 +41,7 @@ from .conftest import (
     write_study,
 )
 
-playwright = pytest.importorskip("playwright.sync_api", reason="pip install 'automotive-cosim[browser]'")
+playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 pytestmark = [
     pytest.mark.slow,
