@@ -61,7 +61,9 @@ def _safety(folder: Path, agent: str) -> None:
     typer.echo(f"{pdf} written" if pdf else f"no PDF: {install_hint('reports')}")
 
 
-Trial = Annotated[Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)]
+TrialFolder = Annotated[
+    Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)
+]
 TrialId = Annotated[
     str,
     typer.Argument(
@@ -71,7 +73,7 @@ TrialId = Annotated[
 
 
 @reads_results
-def attribute(folder: Trial, episode: TrialId = "", as_json: AsJson = False) -> None:
+def attribute(folder: TrialFolder, episode: TrialId = "", as_json: AsJson = False) -> None:
     """Measure what each act of a stored trial changed, by leaving it out, and add that to its page.
 
     Acts that change nothing alone are also left out in pairs.
@@ -103,7 +105,7 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
 @reads_results
 @takes(PlaybackSettings)
 def replay(
-    folder: Trial,
+    folder: TrialFolder,
     episode: TrialId = "",
     without: Annotated[
         list[int] | None,

@@ -247,12 +247,12 @@ class Driver:
                 return self._hear(request, state, say("the driver is asked to pull over"))
             case Cruise(speed_kmh):
                 return self._cruise(speed_kmh, state)
-            case Redraw(None):
-                self._drawn()
-                return Answer(True, "")
-            case Redraw(seed):
+            case Redraw(int(seed)):
                 self._draws = np.random.default_rng([self.plan.seed, 0, seed])
                 self.pedals.renew(seed)
+                return Answer(True, "")
+            case Redraw():
+                self._drawn()
                 return Answer(True, "")
             case Hazards(on):
                 self.hazard_lights = on
