@@ -180,9 +180,11 @@ def attribute(
 def forked(trial: Recorded, simulations: Simulations) -> Iterator[Forks]:
     """A stored trial, played again, with a fork from before each of its acts; arguments and errors as above."""
     job, stored, channels, failure = trial
-    with closing(Forks(job.setup.seed)) as forks:
+    with closing(Forks(job.seed)) as forks:
         player = _Forking(stored[1:], channels, failure, forks)
-        record = played(job, stored, channels, failure, simulations=simulations, observers=(forks,), player=player)
+        _, record = played(
+            job, stored, channels, failure, simulations=simulations, observers=(forks,), player=player
+        )
         again = compare(stored, [line for line in record.lines if "step" in line])
         if wrong := next((step for step in again if step.differs), None):
             raise InfrastructureError(
@@ -238,7 +240,7 @@ class _Fork:
     """Of a drive, its events so far; None of a task."""
 
 
-class Forks(TrialObserver[Any, Any]):
+class Forks(TrialObserver):
     """Watches a trial, keeps a fork from before each of its acts, and drives on from them."""
 
     def __init__(self, seed: int) -> None:
@@ -287,7 +289,7 @@ class Forks(TrialObserver[Any, Any]):
             text = (action.text or "") if action is not None else ""
             self.acts.append(_Act(step.number, at_s, new, acts, self._forks[-1], text))
 
-    def finished(self, result: Any) -> None:
+    def finished(self, row: Any, told: Any) -> None:
         """Keeps what the judge needs beside the trial itself."""
         if self._session is not None:
             self._untouched = self._session.baseline_moments

@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.apps.settings.state import Connections
 from automotive_cosim.cockpit.cards import content, heading
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.drawing import text_width
-from automotive_cosim.cockpit.flow import Block, BlockPart, at, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, at, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes
 from automotive_cosim.cockpit.map import camera_of
@@ -78,7 +78,7 @@ def _way(state: State) -> Block:
         align="right",
         style=Type.LABEL,
     )
-    words: BlockPart = Label(
+    words: Label | Block = Label(
         key="home.street", text=street(state), description=say("Current road"), style=Type.STRONG
     )
     if turn:
