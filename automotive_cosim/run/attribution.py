@@ -50,15 +50,14 @@ from automotive_cosim.drives.judge import BACK, EventOutcome, JudgedAct, Worth, 
 from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.session import DriveSession
-from automotive_cosim.episode.counterfactual import counterfactual
-from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.episode import Episode, counterfactual
 from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.run.harm import drive_figures
+from automotive_cosim.run.figures import drive_figures
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.rerun import Player, Recorded, compare, played, recorded
 from automotive_cosim.run.row import from_json

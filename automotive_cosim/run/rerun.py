@@ -34,11 +34,7 @@ from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup, read_setup
 from automotive_cosim.run.fork_server import ForkServer
-<<<<<<< HEAD
-=======
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.observer import TrialObserver
->>>>>>> ready/acts
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rows import read_trials
