@@ -1,0 +1,296 @@
+"""The surface of the roads as a driver sees it: lanes, markings, kerbs and stop lines, as areas in the network."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from shapely import LineString, MultiPoint, Polygon, STRtree
+
+from automotive_cosim.contracts import GroundArea, LaneShape, LimitSource, Road, RoadNetwork, RoadShapes
+from automotive_cosim.view.lens import Floats, Point
+
+Line = tuple[Point, ...]
+LINE_M, KERB_M, STOP_LINE_M, RAIL_M = 0.14, 0.16, 0.4, 0.72
+"""Width of a marking, of a kerb and of a stop line, and from the middle of a track to a rail."""
+MOTORWAYS = ("motorway", "trunk")
+ACROSS_M = 60.0
+"""Signals across a junction stand no farther away than this."""
+
+
+class Cover(IntEnum):
+    """What an area of the road is covered with, in the order of drawing."""
+
+    FOOT = 0
+    ROAD = 1
+    BUS = 2
+    BICYCLE = 3
+    RAIL = 4
+    KERB = 5
+    STEEL = 6
+    WHITE = 7
+    YELLOW = 8
+
+
+_OF_KIND = {"foot": Cover.FOOT, "bus": Cover.BUS, "bicycle": Cover.BICYCLE, "rail": Cover.RAIL}
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A spot beside or above a road, for who drives in a direction."""
+
+    x_m: float
+    y_m: float
+    heading_deg: float
+    """Of who drives there, clockwise from north."""
+
+
+@dataclass(frozen=True, slots=True)
+class Street:
+    """One edge."""
+
+    edge_id: str
+    areas: tuple[tuple[Cover, Floats], ...]
+    """Its surface and what is painted on it: corners in the network."""
+    begin: Place
+    """Beside its kerb, where it begins."""
+    stop: Place
+    """Beside its kerb, where it ends."""
+    sides: tuple[Line, Line]
+    """Its left and its right border."""
+    lanes: tuple[tuple[str, Line, float], ...]
+    """Id, centre line and width of each lane for vehicles."""
+    signals: tuple[tuple[Place, Place, tuple[tuple[str, int], ...]], ...]
+    """Of each lane with a signal: the place over its stop line, the one across the junction, and its links."""
+
+
+def shifted(line: Sequence[Point], right_m: float) -> Line:
+    """A line so far to the right of another."""
+    found = []
+    for at, (x, y) in enumerate(line):
+        before, after = line[max(0, at - 1)], line[min(len(line) - 1, at + 1)]
+        dx, dy = after[0] - before[0], after[1] - before[1]
+        length = math.hypot(dx, dy) or 1.0
+        found.append((x + right_m * dy / length, y - right_m * dx / length))
+    return tuple(found)
+
+
+def along(line: Sequence[Point], at_m: float) -> Place:
+    """A place at a distance from the beginning of a line, at most at its end."""
+    before, here = line[0], line[-1]
+    for before, here in pairwise(line):
+        length = math.dist(before, here)
+        if at_m <= length and length > 0:
+            share = max(0.0, at_m) / length
+            x, y = before[0] + share * (here[0] - before[0]), before[1] + share * (here[1] - before[1])
+            return Place(x, y, _heading(before, here))
+        at_m -= length
+    return Place(here[0], here[1], _heading(before, here))
+
+
+def _heading(before: Point, after: Point) -> float:
+    return math.degrees(math.atan2(after[0] - before[0], after[1] - before[1])) % 360
+
+
+def _length(line: Sequence[Point]) -> float:
+    return sum(math.dist(before, after) for before, after in pairwise(line))
+
+
+def _band(line: Sequence[Point], left_m: float, right_m: float) -> Floats:
+    """The area between two distances to the right of a line."""
+    return np.array((*shifted(line, left_m), *reversed(shifted(line, right_m))), dtype=np.float64)
+
+
+def _pieces(line: Sequence[Point], from_m: float, to_m: float) -> list[Point]:
+    """The part of a line between two distances from its beginning."""
+    first, last = along(line, from_m), along(line, to_m)
+    inside, passed_m = [(first.x_m, first.y_m)], 0.0
+    for before, after in pairwise(line):
+        passed_m += math.dist(before, after)
+        if from_m < passed_m < to_m:
+            inside.append(after)
+    return [*inside, (last.x_m, last.y_m)]
+
+
+def painted(line: Sequence[Point], dash_m: tuple[float, float] | None, width_m: float = LINE_M) -> Iterator[Floats]:
+    """A marking along a line: solid, or with dashes of that length, so far from one to the next."""
+    half_m = width_m / 2
+    if dash_m is None:
+        yield _band(line, -half_m, half_m)
+        return
+    length_m, at_m = _length(line), 0.0
+    while at_m + dash_m[0] <= length_m:
+        yield _band(_pieces(line, at_m, at_m + dash_m[0]), -half_m, half_m)
+        at_m += dash_m[1]
+
+
+class RoadMap:
+    """All streets of a network by place; each is drawn out when it is first seen."""
+
+    def __init__(self, shapes: RoadShapes, network: RoadNetwork) -> None:
+        """Indexes them."""
+        self.left_hand = network.left_hand
+        self.roads: Mapping[str, Road] = {road.edge_id: road for road in network.roads}
+        self.lengths_m = network.junctions_m
+        self.before: dict[str, list[str]] = {}
+        for here, after in network.junctions_m:
+            self.before.setdefault(after, []).append(here)
+        lanes: dict[str, list[LaneShape]] = {}
+        for lane in shapes.lanes:
+            if len(lane.line_m) > 1:
+                lanes.setdefault(lane.lane_id.rpartition("_")[0], []).append(lane)
+        for own in lanes.values():
+            own.sort(key=lambda lane: int(lane.lane_id.rpartition("_")[2]))
+        self._lanes, self._edges = lanes, list(lanes)
+        self._streets: dict[str, Street] = {}
+        boxes = [MultiPoint([point for lane in own for point in lane.line_m]).envelope for own in lanes.values()]
+        self._tree = STRtree(boxes)
+        self._junctions = [Polygon(outline).buffer(0.0) for outline in shapes.junctions]
+        self._outlines = [np.array(outline, dtype=np.float64) for outline in shapes.junctions]
+        self._crossings = STRtree(self._junctions)
+        self._ground = shapes.ground
+        self._areas = STRtree([MultiPoint(area.outline_m).envelope for area in shapes.ground])
+
+    def streets(self, x_m: float, y_m: float, radius_m: float) -> list[Street]:
+        """Those within a distance, in the order of the network."""
+        return [self.street(self._edges[at]) for at in self._near(self._tree, x_m, y_m, radius_m)]
+
+    def crossings(self, x_m: float, y_m: float, radius_m: float) -> list[Floats]:
+        """Outlines of the junctions within a distance."""
+        return [self._outlines[at] for at in self._near(self._crossings, x_m, y_m, radius_m)]
+
+    def ground(self, x_m: float, y_m: float, radius_m: float) -> list[GroundArea]:
+        """Green, water and buildings within a distance."""
+        return [self._ground[at] for at in self._near(self._areas, x_m, y_m, radius_m)]
+
+    def street(self, edge_id: str) -> Street:
+        """One edge of the network.
+
+        Raises:
+            KeyError: there is none.
+        """
+        if edge_id not in self._streets:
+            self._streets[edge_id] = self._drawn(edge_id, self._lanes[edge_id])
+        return self._streets[edge_id]
+
+    def has(self, edge_id: str) -> bool:
+        """Whether it has lanes outside junctions."""
+        return edge_id in self._lanes
+
+    def in_tunnel(self, edge_id: str) -> bool:
+        """Whether it runs in a tunnel."""
+        road = self.roads.get(edge_id)
+        return road is not None and road.in_tunnel
+
+    def posts(self, edge_id: str) -> bool:
+        """Whether a limit is posted where it begins: it has one, and one before it has not the same."""
+        road = self.roads.get(edge_id)
+        if road is None or road.limit_source is not LimitSource.POSTED:
+            return False
+        before = [self.roads[each] for each in self.before.get(edge_id, ()) if each in self.roads]
+        return any((each.limit_source, each.limit_mps) != (road.limit_source, road.limit_mps) for each in before)
+
+    @staticmethod
+    def _near(tree: STRtree, x_m: float, y_m: float, radius_m: float) -> list[int]:
+        found = tree.query(shapely.Point(x_m, y_m), predicate="dwithin", distance=radius_m)
+        return sorted(int(each) for each in found)
+
+    def _drawn(self, edge_id: str, lanes: list[LaneShape]) -> Street:
+        inward = 1.0 if self.left_hand else -1.0
+        """The sign of what is to the right of a line, towards the middle of the road."""
+        areas: list[tuple[Cover, Floats]] = []
+        road = self.roads.get(edge_id)
+        is_fast = road is not None and road.road_class.removesuffix("_link") in MOTORWAYS
+        dash_m = (6.0, 18.0) if is_fast else (3.0, 9.0)
+        driven = [lane for lane in lanes if lane.kind != "foot"]
+        for at, lane in enumerate(lanes):
+            half_m, cover = lane.width_m / 2, _OF_KIND.get(lane.kind, Cover.ROAD)
+            areas.append((cover, _band(lane.line_m, -half_m, half_m)))
+            if cover is Cover.RAIL:
+                for side in (-1, 1):
+                    rail = shifted(lane.line_m, side * RAIL_M)
+                    areas += ((Cover.STEEL, each) for each in painted(rail, None, 0.08))
+            inner = lanes[at + 1] if at + 1 < len(lanes) else None
+            border = shifted(lane.line_m, inward * half_m)
+            kinds = {lane.kind, inner.kind if inner else ""}
+            if "foot" in kinds and inner is not None:
+                areas += ((Cover.KERB, each) for each in painted(border, None, KERB_M))
+            elif inner is not None and "rail" not in kinds:
+                solid = kinds & {"bus", "bicycle"}
+                areas += ((Cover.WHITE, each) for each in painted(border, None if solid else dash_m))
+            elif inner is None and lane.kind == "road":
+                areas += self._inner_line(border, is_fast=is_fast, dash_m=dash_m)
+        outer = driven[0] if driven else lanes[0]
+        edge = shifted(outer.line_m, -inward * outer.width_m / 2)
+        if driven and outer.kind != "rail" and outer is lanes[0]:
+            where = shifted(edge, inward * 0.25) if is_fast else edge
+            cover, width_m = (Cover.WHITE, LINE_M) if is_fast else (Cover.KERB, KERB_M)
+            areas += ((cover, each) for each in painted(where, None, width_m))
+        for lane in driven:
+            if lane.links and lane.kind != "rail":
+                length_m = _length(lane.line_m)
+                piece = _pieces(lane.line_m, max(0.0, length_m - STOP_LINE_M), length_m)
+                areas.append((Cover.WHITE, _band(piece, -lane.width_m / 2 + 0.1, lane.width_m / 2 - 0.1)))
+        last = driven[-1] if driven else lanes[-1]
+        inner_edge = shifted(last.line_m, inward * last.width_m / 2)
+        beside = shifted(lanes[0].line_m, -inward * (lanes[0].width_m / 2 + 0.7))
+        return Street(
+            edge_id,
+            tuple(areas),
+            along(beside, 0.0),
+            along(beside, math.inf),
+            (edge, inner_edge) if self.left_hand else (inner_edge, edge),
+            tuple((lane.lane_id, lane.line_m, lane.width_m) for lane in driven),
+            tuple(
+                (along(lane.line_m, math.inf), self._across(lane.line_m), lane.links)
+                for lane in driven
+                if lane.links and lane.kind != "rail"
+            ),
+        )
+
+    def _inner_line(
+        self, border: Line, *, is_fast: bool, dash_m: tuple[float, float]
+    ) -> Iterator[tuple[Cover, Floats]]:
+        """Between the two directions of a road, or beside the median."""
+        middle = along(border, _length(border) / 2)
+        for at in self._near(self._tree, middle.x_m, middle.y_m, 2.5):
+            for lane in self._lanes[self._edges[at]]:
+                if lane.kind in ("road", "bus") and self._meets(lane, middle):
+                    yield from ((Cover.YELLOW, each) for each in painted(border, dash_m))
+                    return
+        inward = -1.0 if self.left_hand else 1.0
+        where = shifted(border, inward * 0.25) if is_fast else border
+        cover, width_m = (Cover.WHITE, LINE_M) if is_fast else (Cover.KERB, KERB_M)
+        yield from ((cover, each) for each in painted(where, None, width_m))
+
+    @staticmethod
+    def _meets(lane: LaneShape, place: Place) -> bool:
+        """Whether a lane leads the other way right beside a place."""
+        line = LineString(lane.line_m)
+        point = shapely.Point(place.x_m, place.y_m)
+        if line.distance(point) > lane.width_m / 2 + 0.8:
+            return False
+        here = along(lane.line_m, float(line.project(point)))
+        return abs((here.heading_deg - place.heading_deg + 360) % 360 - 180) < 30
+
+    def _across(self, line: Line) -> Place:
+        """Straight on at the far side of the junction at the end of a lane."""
+        end = along(line, math.inf)
+        angle = math.radians(end.heading_deg)
+        east, north = math.sin(angle), math.cos(angle)
+        ray = LineString([(end.x_m, end.y_m), (end.x_m + ACROSS_M * east, end.y_m + ACROSS_M * north)])
+        far_m = 0.0
+        for at in self._near(self._crossings, end.x_m + east, end.y_m + north, 0.5):
+            inside = ray.intersection(self._junctions[at])
+            far_m = max(far_m, 0.0 if inside.is_empty else _reach(inside, end))
+        return Place(end.x_m + (far_m + 1.0) * east, end.y_m + (far_m + 1.0) * north, end.heading_deg)
+
+
+def _reach(shape: shapely.Geometry, place: Place) -> float:
+    """How far the farthest point of a shape is."""
+    return max(math.dist((place.x_m, place.y_m), point) for point in shapely.get_coordinates(shape).tolist())
