@@ -29,7 +29,7 @@ from automotive_cosim.contracts import UNCALLED, Action, Json, Observation
 from automotive_cosim.errors import ActionError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import Function, action_of, offered
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, ToolCall
 
 MOST_CALLS = 10
@@ -61,7 +61,7 @@ class Caller:
             chat_model: the model to ask, which knows the functions (``tools``) by its protocol.
             settings: the conditions, what to take away, the budget.
         """
-        wanted = AgentProfile(self.name, frozenset(Channel), frozenset(UNCALLED), reflects=False)
+        wanted = AgentProfile(self.name, ALL, frozenset(UNCALLED), reflects=False)
         self._profile = wanted.under(settings)
         self._asking = Asking(chat_model, settings)
         self._known = {function.name: function.parameters for function in tools(settings)}

@@ -9,12 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 WIDTH, HEIGHT = 640, 360
 """Pixels of the picture."""
+FINE = 2
+"""How many times as large the picture is painted."""
 NEAR_M = 0.4
 """What is nearer to the lens is cut off."""
 
@@ -22,6 +25,12 @@ Point = tuple[float, float]
 Seen = tuple[float, float, float]
 """Metres to the right of the lens, ahead of it, and above the road."""
 Floats = npt.NDArray[np.float64]
+
+
+@lru_cache(maxsize=16)
+def _turn(heading_deg: float) -> tuple[float, float]:
+    angle = math.radians(heading_deg)
+    return math.sin(angle), math.cos(angle)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,27 +45,22 @@ class Lens:
     up_m: float
     """Height above the road."""
     focal: float
-    """Focal length in widths of the picture: half a width ahead, it sees one width divided by twice this."""
+    """Focal length in widths of the picture: what is as wide as it is far away takes this share of the width."""
     horizon: float
     """Height of the horizon, as a share of the picture's from its upper edge."""
     mirrored: bool = False
     """Whether left and right change places, as behind a car."""
 
-    @property
-    def _turn(self) -> tuple[float, float]:
-        angle = math.radians(self.heading_deg)
-        return math.sin(angle), math.cos(angle)
-
     def sees(self, x_m: float, y_m: float, up_m: float = 0.0) -> Seen:
         """Where a point of the network is from here."""
-        east, north = self._turn
+        east, north = _turn(self.heading_deg)
         dx, dy = x_m - self.x_m, y_m - self.y_m
         right = dx * north - dy * east
         return (-right if self.mirrored else right), dx * east + dy * north, up_m
 
     def all(self, points_m: Floats) -> tuple[Floats, Floats]:
         """The same of many points on the road: to the right, and ahead."""
-        east, north = self._turn
+        east, north = _turn(self.heading_deg)
         dx, dy = points_m[:, 0] - self.x_m, points_m[:, 1] - self.y_m
         right = dx * north - dy * east
         return (-right if self.mirrored else right), dx * east + dy * north
@@ -74,6 +78,13 @@ class Lens:
         down = self.horizon * HEIGHT * fine + (self.up_m - up) * scale
         return round(across), round(down)
 
+    def pixels(self, right: Floats, ahead: Floats) -> list[tuple[int, int]]:
+        """The pixels of many points on the road in the picture as it is painted; those not ahead anywhere."""
+        scale = self.focal * WIDTH * FINE / np.maximum(ahead, NEAR_M)
+        across = np.rint(WIDTH * FINE / 2 + right * scale).astype(np.int64)
+        down = np.rint(self.horizon * HEIGHT * FINE + self.up_m * scale).astype(np.int64)
+        return list(zip(across.tolist(), down.tolist(), strict=True))
+
     def shape(self, corners: Iterable[Seen], fine: int = 1) -> list[tuple[int, int]]:
         """The pixels of a plane face, without what is too near; empty if nothing is left of it."""
         kept = clipped(list(corners))
@@ -84,7 +95,7 @@ class Lens:
         scale = (down_px - self.horizon * HEIGHT) / self.up_m
         ahead, right = self.focal * WIDTH / scale, (across_px - WIDTH / 2) / scale
         right = -right if self.mirrored else right
-        east, north = self._turn
+        east, north = _turn(self.heading_deg)
         return self.x_m + ahead * east + right * north, self.y_m + ahead * north - right * east
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 from shapely import LineString, MultiPoint, Polygon, STRtree
 
-from automotive_cosim.contracts import GroundArea, LaneShape, LimitSource, Road, RoadNetwork, RoadShapes
+from automotive_cosim.contracts import GroundKind, LaneShape, LimitSource, Road, RoadNetwork, RoadShapes
 from automotive_cosim.view.lens import Floats, Point
 
 Line = tuple[Point, ...]
@@ -26,15 +26,18 @@ ACROSS_M = 60.0
 class Cover(IntEnum):
     """What an area of the road is covered with, in the order of drawing."""
 
-    FOOT = 0
-    ROAD = 1
-    BUS = 2
-    BICYCLE = 3
-    RAIL = 4
-    KERB = 5
-    STEEL = 6
-    WHITE = 7
-    YELLOW = 8
+    GREEN = 0
+    WATER = 1
+    CROSSING = 2
+    FOOT = 3
+    ROAD = 4
+    BUS = 5
+    BICYCLE = 6
+    RAIL = 7
+    KERB = 8
+    STEEL = 9
+    WHITE = 10
+    YELLOW = 11
 
 
 _OF_KIND = {"foot": Cover.FOOT, "bus": Cover.BUS, "bicycle": Cover.BICYCLE, "rail": Cover.RAIL}
@@ -51,12 +54,30 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
+class Areas:
+    """Areas on the ground."""
+
+    covers: tuple[int, ...]
+    """What each is covered with."""
+    counts: tuple[int, ...]
+    """How many corners each has."""
+    corners_m: Floats
+    """Those of all, one after another."""
+
+    @classmethod
+    def of(cls, areas: Sequence[tuple[int, Floats]]) -> Areas:
+        """Areas one by one."""
+        corners = np.concatenate([each for _, each in areas]) if areas else np.empty((0, 2))
+        return cls(tuple(cover for cover, _ in areas), tuple(len(each) for _, each in areas), corners)
+
+
+@dataclass(frozen=True, slots=True)
 class Street:
     """One edge."""
 
     edge_id: str
-    areas: tuple[tuple[Cover, Floats], ...]
-    """Its surface and what is painted on it: corners in the network."""
+    areas: Areas
+    """Its surface and what is painted on it."""
     begin: Place
     """Beside its kerb, where it begins."""
     stop: Place
@@ -153,20 +174,28 @@ class RoadMap:
         self._junctions = [Polygon(outline).buffer(0.0) for outline in shapes.junctions]
         self._outlines = [np.array(outline, dtype=np.float64) for outline in shapes.junctions]
         self._crossings = STRtree(self._junctions)
-        self._ground = shapes.ground
+        self._ground = [(area, np.array(area.outline_m, dtype=np.float64)) for area in shapes.ground]
         self._areas = STRtree([MultiPoint(area.outline_m).envelope for area in shapes.ground])
 
     def streets(self, x_m: float, y_m: float, radius_m: float) -> list[Street]:
         """Those within a distance, in the order of the network."""
         return [self.street(self._edges[at]) for at in self._near(self._tree, x_m, y_m, radius_m)]
 
-    def crossings(self, x_m: float, y_m: float, radius_m: float) -> list[Floats]:
-        """Outlines of the junctions within a distance."""
-        return [self._outlines[at] for at in self._near(self._crossings, x_m, y_m, radius_m)]
+    def ground(self, x_m: float, y_m: float, radius_m: float) -> Areas:
+        """Green, water and the junctions within a distance."""
+        near = [self._ground[at] for at in self._near(self._areas, x_m, y_m, radius_m)]
+        flat: list[tuple[int, Floats]] = [
+            (Cover.GREEN if area.kind is GroundKind.GREEN else Cover.WATER, outline)
+            for area, outline in near
+            if area.kind is not GroundKind.BUILDING
+        ]
+        crossings = self._near(self._crossings, x_m, y_m, radius_m)
+        return Areas.of([*flat, *((Cover.CROSSING, self._outlines[at]) for at in crossings)])
 
-    def ground(self, x_m: float, y_m: float, radius_m: float) -> list[GroundArea]:
-        """Green, water and buildings within a distance."""
-        return [self._ground[at] for at in self._near(self._areas, x_m, y_m, radius_m)]
+    def buildings(self, x_m: float, y_m: float, radius_m: float) -> list[Floats]:
+        """Outlines of the buildings within a distance."""
+        near = (self._ground[at] for at in self._near(self._areas, x_m, y_m, radius_m))
+        return [outline for area, outline in near if area.kind is GroundKind.BUILDING]
 
     def street(self, edge_id: str) -> Street:
         """One edge of the network.
@@ -224,7 +253,7 @@ class RoadMap:
                 solid = kinds & {"bus", "bicycle"}
                 areas += ((Cover.WHITE, each) for each in painted(border, None if solid else dash_m))
             elif inner is None and lane.kind == "road":
-                areas += self._inner_line(border, is_fast=is_fast, dash_m=dash_m)
+                areas += self._inner_line(edge_id, border, is_fast=is_fast, dash_m=dash_m)
         outer = driven[0] if driven else lanes[0]
         edge = shifted(outer.line_m, -inward * outer.width_m / 2)
         if driven and outer.kind != "rail" and outer is lanes[0]:
@@ -241,7 +270,7 @@ class RoadMap:
         beside = shifted(lanes[0].line_m, -inward * (lanes[0].width_m / 2 + 0.7))
         return Street(
             edge_id,
-            tuple(areas),
+            Areas.of(areas),
             along(beside, 0.0),
             along(beside, math.inf),
             (edge, inner_edge) if self.left_hand else (inner_edge, edge),
@@ -254,14 +283,15 @@ class RoadMap:
         )
 
     def _inner_line(
-        self, border: Line, *, is_fast: bool, dash_m: tuple[float, float]
+        self, edge_id: str, border: Line, *, is_fast: bool, dash_m: tuple[float, float]
     ) -> Iterator[tuple[Cover, Floats]]:
         """Between the two directions of a road, or beside the median."""
         middle = along(border, _length(border) / 2)
         for at in self._near(self._tree, middle.x_m, middle.y_m, 2.5):
             for lane in self._lanes[self._edges[at]]:
                 if lane.kind in ("road", "bus") and self._meets(lane, middle):
-                    yield from ((Cover.YELLOW, each) for each in painted(border, dash_m))
+                    if edge_id < self._edges[at]:  # one line between the two
+                        yield from ((Cover.YELLOW, each) for each in painted(border, dash_m))
                     return
         inward = -1.0 if self.left_hand else 1.0
         where = shifted(border, inward * 0.25) if is_fast else border
