@@ -16,8 +16,15 @@ Profile = tuple[tuple[float, float, float], ...]
 height in metres, and half the width there as a share of half the vehicle's."""
 
 PAINTS: tuple[Colour, ...] = (
-    (196, 200, 206), (52, 58, 68), (232, 234, 236), (120, 26, 34), (34, 64, 112), (88, 96, 104), (60, 84, 76), (168, 132, 84),
-)  # fmt: skip
+    (196, 200, 206),
+    (52, 58, 68),
+    (232, 234, 236),
+    (120, 26, 34),
+    (34, 64, 112),
+    (88, 96, 104),
+    (60, 84, 76),
+    (168, 132, 84),
+)
 """A vehicle's own for as long as it is seen, by its id: SUMO knows none, and none means anything."""
 GLASS, TYRE, UNDER = (38, 48, 58), (24, 26, 28), (30, 32, 34)
 RED_ON, RED, AMBER, WHITE, BLUE = (255, 40, 36), (122, 18, 22), (255, 168, 30), (255, 248, 226), (60, 130, 255)
@@ -44,21 +51,62 @@ class _Form:
 
 
 _CAR = _Form(
-    ((0.0, 0.3, 1.0), (0.0, 0.9, 1.0), (0.03, 1.0, 0.94), (0.17, 1.46, 0.72), (0.56, 1.48, 0.72), (0.73, 1.0, 0.94), (1.0, 0.78, 0.94), (1.0, 0.3, 1.0)),
-    (2, 4), (0.2, 0.66, 1.0, 1.38),
-)  # fmt: skip
+    (
+        (0.0, 0.3, 1.0),
+        (0.0, 0.9, 1.0),
+        (0.03, 1.0, 0.94),
+        (0.17, 1.46, 0.72),
+        (0.56, 1.48, 0.72),
+        (0.73, 1.0, 0.94),
+        (1.0, 0.78, 0.94),
+        (1.0, 0.3, 1.0),
+    ),
+    (2, 4),
+    (0.2, 0.66, 1.0, 1.38),
+)
 _VAN = _Form(
-    ((0.0, 0.35, 1.0), (0.0, 1.1, 1.0), (0.0, 1.85, 0.96), (0.02, 2.4, 0.9), (0.74, 2.42, 0.9), (0.9, 1.3, 0.98), (1.0, 1.05, 0.98), (1.0, 0.35, 1.0)),
-    (1, 4), (0.68, 0.84, 1.3, 1.95), (226, 228, 230),
-)  # fmt: skip
+    (
+        (0.0, 0.35, 1.0),
+        (0.0, 1.1, 1.0),
+        (0.0, 1.85, 0.96),
+        (0.02, 2.4, 0.9),
+        (0.74, 2.42, 0.9),
+        (0.9, 1.3, 0.98),
+        (1.0, 1.05, 0.98),
+        (1.0, 0.35, 1.0),
+    ),
+    (1, 4),
+    (0.68, 0.84, 1.3, 1.95),
+    (226, 228, 230),
+)
 _LORRY = _Form(
-    ((0.0, 0.5, 1.0), (0.0, 3.7, 1.0), (0.78, 3.7, 1.0), (0.8, 3.1, 0.98), (0.985, 3.0, 0.96), (1.0, 1.7, 0.98), (1.0, 0.5, 1.0)),
-    (4,), (0.84, 0.97, 1.75, 2.6),
-)  # fmt: skip
+    (
+        (0.0, 0.5, 1.0),
+        (0.0, 3.7, 1.0),
+        (0.78, 3.7, 1.0),
+        (0.8, 3.1, 0.98),
+        (0.985, 3.0, 0.96),
+        (1.0, 1.7, 0.98),
+        (1.0, 0.5, 1.0),
+    ),
+    (4,),
+    (0.84, 0.97, 1.75, 2.6),
+)
 _BUS = _Form(
-    ((0.0, 0.35, 1.0), (0.0, 1.6, 1.0), (0.0, 2.5, 1.0), (0.01, 3.1, 0.96), (0.98, 3.1, 0.96), (1.0, 2.8, 1.0), (1.0, 1.1, 1.0), (1.0, 0.35, 1.0)),
-    (1, 5), (0.04, 0.95, 1.35, 2.6), (176, 44, 48),
-)  # fmt: skip
+    (
+        (0.0, 0.35, 1.0),
+        (0.0, 1.6, 1.0),
+        (0.0, 2.5, 1.0),
+        (0.01, 3.1, 0.96),
+        (0.98, 3.1, 0.96),
+        (1.0, 2.8, 1.0),
+        (1.0, 1.1, 1.0),
+        (1.0, 0.35, 1.0),
+    ),
+    (1, 5),
+    (0.04, 0.95, 1.35, 2.6),
+    (176, 44, 48),
+)
 _FORMS = {
     **dict.fromkeys(("delivery",), _VAN),
     **dict.fromkeys(("truck", "trailer"), _LORRY),
@@ -74,7 +122,7 @@ def shadow(vehicle: SeenVehicle, lens: Lens) -> tuple[Seen, ...]:
     place = _placed(vehicle, lens)
     w = vehicle.width_m / 2
     return tuple(
-        place(a, s, 0.0) for a, s in ((-0.15, -w), (-0.15, w), (vehicle.length_m, w), (vehicle.length_m, -w))
+        place(a, s, 0.0) for a, s in ((-0.05, -w), (-0.05, w), (vehicle.length_m, w), (vehicle.length_m, -w))
     )
 
 
@@ -140,27 +188,28 @@ def _car(vehicle: SeenVehicle, lens: Lens, *, dark: bool) -> Iterator[Face]:
     for at in range(len(points) - 1):
         corners = (ring[0][at], ring[0][at + 1], ring[1][at + 1], ring[1][at])
         if _faces_lens(corners, lens):
-            found.append((_depth(corners), [Face(corners, GLASS if at in form.glass else _lit(colour, at))]))
+            found.append(
+                (
+                    _depth(corners),
+                    [Face(corners, GLASS if at in form.glass else _lit(colour, 96 if at == 0 else 108))],
+                )
+            )
     for at, side in ((0, -1), (1, 1)):
-        corners = tuple(ring[at] if side > 0 else reversed(ring[at]))
-        if _faces_lens(corners, lens):
-            own = [Face(corners, tuple(part * 84 // 100 for part in colour))]  # type: ignore[arg-type]
+        outline = tuple(ring[at] if side > 0 else reversed(ring[at]))
+        if _faces_lens(outline, lens):
+            own = [Face(outline, _lit(colour, 84))]
             own += _side(vehicle, place, form, side)
-            found.append((_depth(corners), own))
+            found.append((_depth(outline), own))
     found.sort(key=lambda each: -each[0])
     for _, group in found:
         yield from group
     yield from _lamps(vehicle, place, lens, form, dark=dark)
 
 
-def _lit(colour: Colour, at: int) -> Colour:
-    """The rear and the roof are a little brighter than the sides."""
-    share = 96 if at == 0 else 108
-    return (
-        min(255, colour[0] * share // 100),
-        min(255, colour[1] * share // 100),
-        min(255, colour[2] * share // 100),
-    )
+def _lit(colour: Colour, percent: int) -> Colour:
+    """So many per cent of a colour: the rear and the roof are a little brighter than the sides."""
+    r, g, b = (min(255, part * percent // 100) for part in colour)
+    return r, g, b
 
 
 def _depth(corners: tuple[Seen, ...]) -> float:
@@ -199,15 +248,17 @@ def _lamps(vehicle: SeenVehicle, place: _placed, lens: Lens, form: _Form, *, dar
     """Those of the end that is turned to the lens, and the blue lights."""
     long, wide, signals = vehicle.length_m, vehicle.width_m / 2, vehicle.signals
     is_rear = _faces_lens((place(0, -wide, 0), place(0, -wide, 1), place(0, wide, 1)), lens)
-    end, sign = (-0.02, 1) if is_rear else (long + 0.02, 1)
+    end = -0.02 if is_rear else long + 0.02
     low = 0.66 if form is _CAR else 0.8
     is_front = _faces_lens((place(long, wide, 0), place(long, wide, 1), place(long, -wide, 1)), lens)
 
     def lamp(inner: float, outer: float, bottom: float, top: float, colour: Colour, *, shines: bool) -> Face:
         corners = ((inner, bottom), (inner, top), (outer, top), (outer, bottom))
-        return Face(tuple(place(end, sign * right * wide, up) for right, up in corners), colour, shines)
+        return Face(tuple(place(end, right * wide, up) for right, up in corners), colour, shines)
 
     if is_rear or is_front:
+        for side in (-1, 1):
+            yield lamp(side * 0.66, side * 0.96, 0.0, 0.34, TYRE, shines=False)
         if is_rear:
             brakes = bool(signals & SumoSignal.BRAKE)
             for side in (-1, 1):

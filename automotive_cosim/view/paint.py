@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache, partial
+from itertools import pairwise
 from random import Random
 
 import numpy as np
@@ -13,13 +14,15 @@ from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
 from automotive_cosim.view import bodies
 from automotive_cosim.view.bodies import Colour, Face
-from automotive_cosim.view.lens import FINE, HEIGHT, NEAR_M, WIDTH, Lens, Seen
-from automotive_cosim.view.roads import Areas, Cover, Place
+from automotive_cosim.view.lens import FINE, HEIGHT, NEAR_M, WIDTH, Seen
+from automotive_cosim.view.roads import Areas, Cover, Place, along, length_of
 from automotive_cosim.view.scene import SIGHT_M, Board, Head, Outside, Posted, Scene
 from automotive_cosim.view.signs import board
 
 BUILDING_M, TUNNEL_M, POLE_M = 9.0, 5.0, 2.2
 """Height of every building, of a tunnel, and of a sign's lower edge: maps hold none."""
+BAY_M = 8.0
+"""From one lamp of a tunnel to where the next is not."""
 MARKS_TO_M = 110.0
 """Markings farther away are finer than a pixel."""
 
@@ -102,7 +105,9 @@ class _Painter:
 
     def painted(self) -> Image.Image:
         scene = self._scene
-        self._image = _backdrop(self._top, self._low, self._horizon, _mixed((0, 0, 0), LAND, self._light if self._is_even else 1.0)).copy()
+        self._image = _backdrop(
+            self._top, self._low, self._horizon, _mixed((0, 0, 0), LAND, self._light if self._is_even else 1.0)
+        ).copy()
         self._draw = ImageDraw.Draw(self._image)
         self._celestial()
         self._surface()
@@ -209,6 +214,10 @@ class _Painter:
             if face.shines and self._lights_on:
                 self._halo(face, colour)
 
+    def _put_all(self, faces: Iterable[Face]) -> None:
+        for face in faces:
+            self._put(face)
+
     def _halo(self, face: Face, colour: Colour) -> None:
         """The glow around a lamp in the dark or in the fog."""
         xs, ys, ups = (sum(part) / len(face.corners) for part in zip(*face.corners, strict=True))
@@ -234,13 +243,13 @@ class _Painter:
             back_m = vehicle.length_m / 2
             middle = lens.sees(vehicle.x_m - back_m * math.sin(angle), vehicle.y_m - back_m * math.cos(angle))
             faces = bodies.faces(vehicle, lens, dark=self._lights_on)
-            things.append((middle[1], lambda faces=faces: [self._put(face) for face in faces]))  # type: ignore[misc]
+            things.append((middle[1], partial(self._put_all, faces)))
         for posted in scene.posted:
             place = lens.sees(posted.place.x_m, posted.place.y_m)
-            add(place, lambda posted=posted, place=place: self._post(posted, place))  # type: ignore[misc]
+            add(place, partial(self._post, posted, place))
         for head in scene.heads:
             place = lens.sees(head.place.x_m, head.place.y_m)
-            add(place, lambda head=head, place=place: self._signal(head, place))  # type: ignore[misc]
+            add(place, partial(self._signal, head, place))
         for _, paint in sorted(things, key=lambda each: -each[0]):
             paint()
 
@@ -252,27 +261,39 @@ class _Painter:
         for outline in self._scene.buildings:
             yield from self._building(outline)
         for street in self._scene.tunnels:
-            for line, outward in zip(street.sides, (-1.0, 1.0), strict=True):
-                for (ax, ay), (bx, by) in zip(line, line[1:], strict=False):
-                    steps = max(1, round(math.dist((ax, ay), (bx, by)) / 12.0))
-                    for at in range(steps):
-                        one, two = (
-                            self._lens.sees(ax + (bx - ax) * share, ay + (by - ay) * share)
-                            for share in (at / steps, (at + 1) / steps)
-                        )
-                        if max(one[1], two[1]) > NEAR_M:
-                            yield (one[1] + two[1]) / 2, self._bay(one, two, outward, bright=at % 2 == 0)
+            length_m = max(math.dist(line[0], line[-1]) for line in street.sides)
+            steps = max(1, round(length_m / BAY_M))
+            rows = []
+            for at in range(steps + 1):
+                ends = [
+                    along(line, at / steps * line_m)
+                    for line, line_m in zip(street.sides, map(length_of, street.sides), strict=True)
+                ]
+                rows.append([self._lens.sees(end.x_m, end.y_m) for end in ends])
+            for at, (here, there) in enumerate(pairwise(rows)):
+                middle = sum(corner[1] for corner in (*here, *there)) / 4
+                if max(corner[1] for corner in (*here, *there)) > NEAR_M:
+                    stands = (street.beyond[0] == "", street.beyond[1] == "")
+                    yield middle, self._bay(here, there, stands, bright=at % 2 == 0)
 
-    def _bay(self, one: Seen, two: Seen, outward: float, *, bright: bool) -> Callable[[], None]:
-        """A piece of a tunnel: its wall, and its half of the roof with a lamp."""
+    def _bay(
+        self, here: list[Seen], there: list[Seen], walls: tuple[bool, bool], *, bright: bool
+    ) -> Callable[[], None]:
+        """A piece of a tunnel: its roof with a lamp, and its walls."""
+
+        def band(one: Seen, two: Seen, low: float, high: float, colour: Colour) -> None:
+            self._put(Face(((*one[:2], low), (*one[:2], high), (*two[:2], high), (*two[:2], low)), colour))
 
         def paint() -> None:
-            corners = ((*one[:2], 0.0), (*one[:2], TUNNEL_M), (*two[:2], TUNNEL_M), (*two[:2], 0.0))
-            self._put(Face(corners, (150, 150, 144) if bright else (140, 140, 134)))
-            strip = ((*one[:2], 2.2), (*one[:2], 2.4), (*two[:2], 2.4), (*two[:2], 2.2))
-            self._put(Face(strip, (196, 192, 176)))
-            lamp = ((*one[:2], TUNNEL_M - 0.35), (*one[:2], TUNNEL_M - 0.15), (*two[:2], TUNNEL_M - 0.15))
-            self._put(Face((*lamp, (*two[:2], TUNNEL_M - 0.35)), (255, 232, 180) if bright else (110, 106, 98)))
+            roof = tuple((*corner[:2], TUNNEL_M) for corner in (here[0], here[1], there[1], there[0]))
+            self._put(Face(roof, (84, 84, 82) if bright else (76, 76, 74)))
+            lamps = [_between(here, 0.42), _between(here, 0.58), _between(there, 0.58), _between(there, 0.42)]
+            if bright:
+                self._put(Face(tuple(lamps), (255, 236, 190), shines=True))
+            for one, two, stands in zip(here, there, walls, strict=True):
+                if stands:
+                    band(one, two, 0.0, TUNNEL_M, (150, 150, 144) if bright else (142, 142, 136))
+                    band(one, two, 1.0, 1.25, (178, 172, 150))
 
         return paint
 
@@ -291,7 +312,7 @@ class _Painter:
             slope = abs(ax - bx) / (math.hypot(ax - bx, ay - by) or 1.0)
             colour = _mixed(BUILDING, (96, 90, 86), 0.55 * (1.0 - slope))
             face = Face(((ax, ay, 0.0), (ax, ay, BUILDING_M), (bx, by, BUILDING_M), (bx, by, 0.0)), colour)
-            yield (ay + by) / 2, lambda face=face: self._put(face)  # type: ignore[misc]
+            yield (ay + by) / 2, partial(self._put, face)
 
     def _pole(self, place: Seen, up_m: float, half_m: float = 0.05) -> None:
         x, y, _ = place
@@ -305,8 +326,7 @@ class _Painter:
     def _post(self, posted: Posted, place: Seen) -> None:
         lens = self._lens
         if posted.board is Board.CONE:
-            for face in bodies.cone(place):
-                self._put(face)
+            self._put_all(bodies.cone(place))
             return
         if posted.board is Board.BARRIER:
             angle, half_m = math.radians(posted.place.heading_deg), posted.width_m / 2 - 0.2
@@ -318,16 +338,16 @@ class _Painter:
                 for side in (-1, 1)
             ]
             if min(ends[0][1], ends[1][1]) > NEAR_M:
-                for face in bodies.barrier(ends[0], ends[1]):
-                    self._put(face)
+                self._put_all(bodies.barrier(ends[0], ends[1]))
             return
         size_m = 0.9
         turned = self._turned(posted.place)
-        self._pole(place, POLE_M + 0.2)
+        up_m = POLE_M + (size_m + 0.05) * posted.above
+        self._pole(place, up_m + 0.2)
         side = round(size_m * lens.focal * WIDTH * FINE / place[1])
         if side < 3 or side > 400:
             return
-        x, y = lens.pixel((place[0], place[1], POLE_M + size_m / 2), FINE)
+        x, y = lens.pixel((place[0], place[1], up_m + size_m / 2), FINE)
         if turned < 0.35:
             wide = max(2, round(side * max(0.12, abs(turned)))) // 2
             self._draw.rectangle(
@@ -335,14 +355,10 @@ class _Painter:
             )
             return
         face = board(posted.board, posted.figure, side, self._outside.country)
-        plain = Image.new("RGB", face.size, self._low)
-        light = Image.merge("RGB", face.split()[:3])
-        seen = self._shade((255, 255, 255), place[1], place[0])
-        haze = _haze(place[1], self._haze_m)
-        bright = min(1.0, self._light + _beam(2 if self._scene.car.low_beam else 0, place[1], place[0]))
-        del seen
-        light = Image.blend(Image.new("RGB", face.size, (0, 0, 0)), light, bright)
-        self._image.paste(Image.blend(light, plain, haze), (x - side // 2, y - side // 2), face.getchannel("A"))
+        bright = min(1.0, self._light + 1.2 * _beam(2 if self._scene.car.low_beam else 0, place[1], place[0]))
+        seen = Image.blend(Image.new("RGB", face.size), Image.merge("RGB", face.split()[:3]), bright)
+        seen = Image.blend(seen, Image.new("RGB", face.size, self._low), _haze(place[1], self._haze_m))
+        self._image.paste(seen, (x - side // 2, y - side // 2), face.getchannel("A"))
 
     def _signal(self, head: Head, place: Seen) -> None:
         lens, turned = self._lens, self._turned(head.place)
@@ -381,6 +397,12 @@ class _Painter:
             self._draw.ellipse((x - r, middle - r, x + r, middle + r), colour)
 
 
+def _between(row: list[Seen], share: float) -> Seen:
+    """A point of a tunnel's roof between its two walls."""
+    (ax, ay, _), (bx, by, _) = row
+    return ax + share * (bx - ax), ay + share * (by - ay), TUNNEL_M
+
+
 # --- light, air and glass ----------------------------------------------------------------------------------
 
 
@@ -393,10 +415,11 @@ def _beam(beam: int, ahead_m: float, right_m: float) -> float:
     """The light of dipped (1) or full headlights (2) on a spot, from 0 to 1."""
     if beam == 0 or ahead_m <= 0:
         return 0.0
-    reach_m, spread = (65.0, 0.36) if beam == 1 else (150.0, 0.3)
-    along = 1.0 - ahead_m / reach_m
-    aside = 1.0 - abs(right_m) / (2.2 + spread * ahead_m)
-    return 0.0 if along <= 0 or aside <= 0 else min(1.0, 1.5 * along) * min(1.0, 2.2 * aside) * 0.95
+    reach_m, spread = (70.0, 0.34) if beam == 1 else (160.0, 0.3)
+    far, aside = 1.0 - ahead_m / reach_m, 1.0 - abs(right_m) / (2.6 + spread * ahead_m)
+    if far <= 0 or aside <= 0:
+        return 0.0
+    return 0.82 * min(1.0, ahead_m / 9.0 + 0.25) * far * min(1.0, 1.5 * aside)
 
 
 @lru_cache(maxsize=64)
@@ -422,7 +445,15 @@ def _lit_ground(size: tuple[int, int], up_m: float, focal: float, beam: int, lig
             right = ((column + 0.5) * 4 / FINE - WIDTH / 2) * ahead / (focal * WIDTH)
             values.append(round(255 * min(1.0, light / 50 + _beam(beam, ahead, right))))
     picture.putdata(values)
-    return picture.resize(size, Image.Resampling.BILINEAR).convert("RGB")
+    mask = picture.resize(size, Image.Resampling.BILINEAR)
+    return Image.merge(
+        "RGB",
+        (
+            mask,
+            mask.point([value * 97 // 100 for value in range(256)]),
+            mask.point([value * 88 // 100 for value in range(256)]),
+        ),
+    )
 
 
 @lru_cache(maxsize=32)
@@ -515,8 +546,3 @@ def _glass(small: Image.Image, scene: Scene) -> None:
         small.paste((grey, grey, grey), (0, 0), _blind(film // 4, drops=True))
     if fog > 0:
         small.paste((grey, grey + 4, grey + 8), (0, 0), _blind(fog, drops=False))
-
-
-def shown(faces: Sequence[Face]) -> int:
-    """How many of some faces give light."""
-    return sum(face.shines for face in faces)

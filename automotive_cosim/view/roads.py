@@ -19,6 +19,10 @@ Line = tuple[Point, ...]
 LINE_M, KERB_M, STOP_LINE_M, RAIL_M = 0.14, 0.16, 0.4, 0.72
 """Width of a marking, of a kerb and of a stop line, and from the middle of a track to a rail."""
 MOTORWAYS = ("motorway", "trunk")
+SEAM_M = 0.06
+"""How far areas beside each other overlap."""
+GAP_M = 0.9
+"""Up to this much of what is between two directions is road, too."""
 ACROSS_M = 60.0
 """Signals across a junction stand no farther away than this."""
 
@@ -84,6 +88,8 @@ class Street:
     """Beside its kerb, where it ends."""
     sides: tuple[Line, Line]
     """Its left and its right border."""
+    beyond: tuple[str, str]
+    """The edge of the other direction right beyond each of them; empty if there is none."""
     lanes: tuple[tuple[str, Line, float], ...]
     """Id, centre line and width of each lane for vehicles."""
     signals: tuple[tuple[Place, Place, tuple[tuple[str, int], ...]], ...]
@@ -118,7 +124,8 @@ def _heading(before: Point, after: Point) -> float:
     return math.degrees(math.atan2(after[0] - before[0], after[1] - before[1])) % 360
 
 
-def _length(line: Sequence[Point]) -> float:
+def length_of(line: Sequence[Point]) -> float:
+    """The length of a line, metres."""
     return sum(math.dist(before, after) for before, after in pairwise(line))
 
 
@@ -144,10 +151,23 @@ def painted(line: Sequence[Point], dash_m: tuple[float, float] | None, width_m: 
     if dash_m is None:
         yield _band(line, -half_m, half_m)
         return
-    length_m, at_m = _length(line), 0.0
+    length_m, at_m = length_of(line), 0.0
     while at_m + dash_m[0] <= length_m:
         yield _band(_pieces(line, at_m, at_m + dash_m[0]), -half_m, half_m)
         at_m += dash_m[1]
+
+
+def _inner_line(
+    border: Line, inward: float, edge_id: str, beyond: str, dash_m: tuple[float, float] | None
+) -> Iterator[tuple[Cover, Floats]]:
+    """Between the two directions of a road, or beside the median; solid on motorways, which have no ``dash_m``."""
+    if beyond:
+        if edge_id < beyond:  # one line between the two
+            yield from ((Cover.YELLOW, each) for each in painted(border, dash_m))
+    elif dash_m is None:
+        yield from ((Cover.WHITE, each) for each in painted(shifted(border, -inward * 0.25), None))
+    else:
+        yield from ((Cover.KERB, each) for each in painted(border, None, KERB_M))
 
 
 class RoadMap:
@@ -237,9 +257,10 @@ class RoadMap:
         is_fast = road is not None and road.road_class.removesuffix("_link") in MOTORWAYS
         dash_m = (6.0, 18.0) if is_fast else (3.0, 9.0)
         driven = [lane for lane in lanes if lane.kind != "foot"]
+        beyond = ""
         for at, lane in enumerate(lanes):
             half_m, cover = lane.width_m / 2, _OF_KIND.get(lane.kind, Cover.ROAD)
-            areas.append((cover, _band(lane.line_m, -half_m, half_m)))
+            areas.append((cover, _band(lane.line_m, -half_m - SEAM_M, half_m + SEAM_M)))
             if cover is Cover.RAIL:
                 for side in (-1, 1):
                     rail = shifted(lane.line_m, side * RAIL_M)
@@ -253,7 +274,10 @@ class RoadMap:
                 solid = kinds & {"bus", "bicycle"}
                 areas += ((Cover.WHITE, each) for each in painted(border, None if solid else dash_m))
             elif inner is None and lane.kind == "road":
-                areas += self._inner_line(edge_id, border, is_fast=is_fast, dash_m=dash_m)
+                beyond = self._other_way(border)
+                areas += _inner_line(border, inward, edge_id, beyond, dash_m if not is_fast else None)
+                if beyond:
+                    areas.insert(0, (Cover.ROAD, _band(border, -GAP_M, GAP_M)))
         outer = driven[0] if driven else lanes[0]
         edge = shifted(outer.line_m, -inward * outer.width_m / 2)
         if driven and outer.kind != "rail" and outer is lanes[0]:
@@ -262,7 +286,7 @@ class RoadMap:
             areas += ((cover, each) for each in painted(where, None, width_m))
         for lane in driven:
             if lane.links and lane.kind != "rail":
-                length_m = _length(lane.line_m)
+                length_m = length_of(lane.line_m)
                 piece = _pieces(lane.line_m, max(0.0, length_m - STOP_LINE_M), length_m)
                 areas.append((Cover.WHITE, _band(piece, -lane.width_m / 2 + 0.1, lane.width_m / 2 - 0.1)))
         last = driven[-1] if driven else lanes[-1]
@@ -274,6 +298,7 @@ class RoadMap:
             along(beside, 0.0),
             along(beside, math.inf),
             (edge, inner_edge) if self.left_hand else (inner_edge, edge),
+            ("", beyond) if self.left_hand else (beyond, ""),
             tuple((lane.lane_id, lane.line_m, lane.width_m) for lane in driven),
             tuple(
                 (along(lane.line_m, math.inf), self._across(lane.line_m), lane.links)
@@ -282,21 +307,15 @@ class RoadMap:
             ),
         )
 
-    def _inner_line(
-        self, edge_id: str, border: Line, *, is_fast: bool, dash_m: tuple[float, float]
-    ) -> Iterator[tuple[Cover, Floats]]:
-        """Between the two directions of a road, or beside the median."""
-        middle = along(border, _length(border) / 2)
+    def _other_way(self, border: Line) -> str:
+        """The edge of the other direction right beside an inner border; empty if there is none."""
+        middle = along(border, length_of(border) / 2)
         for at in self._near(self._tree, middle.x_m, middle.y_m, 2.5):
-            for lane in self._lanes[self._edges[at]]:
-                if lane.kind in ("road", "bus") and self._meets(lane, middle):
-                    if edge_id < self._edges[at]:  # one line between the two
-                        yield from ((Cover.YELLOW, each) for each in painted(border, dash_m))
-                    return
-        inward = -1.0 if self.left_hand else 1.0
-        where = shifted(border, inward * 0.25) if is_fast else border
-        cover, width_m = (Cover.WHITE, LINE_M) if is_fast else (Cover.KERB, KERB_M)
-        yield from ((cover, each) for each in painted(where, None, width_m))
+            if any(
+                lane.kind in ("road", "bus") and self._meets(lane, middle) for lane in self._lanes[self._edges[at]]
+            ):
+                return self._edges[at]
+        return ""
 
     @staticmethod
     def _meets(lane: LaneShape, place: Place) -> bool:

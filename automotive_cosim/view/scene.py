@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import pairwise
 from typing import Protocol
 
 from automotive_cosim.contracts import (
@@ -54,6 +55,8 @@ class Posted:
     """On a limit, in the unit of the country."""
     width_m: float = 0.0
     """Of a barrier."""
+    above: int = 0
+    """How many others stand at the same post, below it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,9 +163,9 @@ class Sight:
         route = [each for each in driving.ahead.route_edges[:12] if self._map.has(each)]
         below = outside.in_tunnel
         near = self._map.streets(x_m, y_m, SIGHT_M)
-        hidden = {each.edge_id for each in near if self._map.in_tunnel(each.edge_id) != below} - {
-            *_reached(route, SIGHT_M, self._map)
-        }
+        reached = set(_reached(route, SIGHT_M, self._map))
+        reached |= {each for edge in reached for each in self._map.street(edge).beyond}
+        hidden = {each.edge_id for each in near if self._map.in_tunnel(each.edge_id) != below} - reached
         streets = tuple(each for each in near if each.edge_id not in hidden)
         there = [each for each in near if each.edge_id in hidden]
         lights = dict(snapshot.lights)
@@ -179,8 +182,8 @@ class Sight:
                 if each is not own and _is_near(each, lens) and not (there and _is_on(each, there, streets))
             ),
             tuple(each for each in snapshot.people if _is_near(each, lens) and not below),
-            tuple(self._posted(streets, snapshot, driving, outside, route)),
-            tuple(head for street in streets for head in _heads(street, lights, lens, left=self._map.left_hand)),
+            _stacked(self._posted(streets, snapshot, driving, outside, route)),
+            tuple(head for street in streets for head in _heads(street, lights, lens)),
             outside,
             car,
         )
@@ -288,12 +291,22 @@ def _is_on(vehicle: SeenVehicle, hidden: list[Street], streets: tuple[Street, ..
 
 def _distance(line: tuple[tuple[float, float], ...], vehicle: SeenVehicle) -> float:
     best = math.inf
-    for (ax, ay), (bx, by) in zip(line, line[1:], strict=False):
+    for (ax, ay), (bx, by) in pairwise(line):
         dx, dy = bx - ax, by - ay
         share = ((vehicle.x_m - ax) * dx + (vehicle.y_m - ay) * dy) / ((dx * dx + dy * dy) or 1.0)
         share = min(1.0, max(0.0, share))
         best = min(best, math.hypot(vehicle.x_m - ax - share * dx, vehicle.y_m - ay - share * dy))
     return best
+
+
+def _stacked(posted: Iterable[Posted]) -> tuple[Posted, ...]:
+    """Signs at the same post above each other, each once."""
+    at: dict[Place, int] = {}
+    found = []
+    for each in dict.fromkeys(posted):
+        found.append(replace(each, above=at.get(each.place, 0)))
+        at[each.place] = at.get(each.place, 0) + 1
+    return tuple(found)
 
 
 def _limit(limit: Limit, place: Place, outside: Outside) -> Posted:
@@ -303,16 +316,16 @@ def _limit(limit: Limit, place: Place, outside: Outside) -> Posted:
     return Posted(Board.LIMIT, place, f"{figure:.0f}")
 
 
-def _heads(street: Street, lights: Mapping[str, str], lens: Lens, *, left: bool) -> Iterator[Head]:
-    """At the kerb before the junction for all lanes, and across it over each lane; one for each of a lane's ways that
-    shows something else."""
+def _heads(street: Street, lights: Mapping[str, str], lens: Lens) -> Iterator[Head]:
+    """At the kerb before the junction for the lane there, and across it over each lane; two beside each other where
+    a lane's ways have different lights."""
     kerb = True
     for near, across, links in street.signals:
         _, ahead, _ = lens.sees(near.x_m, near.y_m)
         states = [lights[light][at] for light, at in links if at < len(lights.get(light, ""))]
         if not states or not -80.0 < ahead < SIGNS_M:
             continue
-        shown = list(dict.fromkeys(states))[:2]
+        shown = list({state.lower(): state for state in states}.values())[:2]
         for at, state in enumerate(shown):
             aside_m = 0.5 * (at - (len(shown) - 1) / 2)
             yield Head(across, state, 5.2, aside_m)
