@@ -21,7 +21,7 @@ from dataclasses import replace
 from automotive_cosim.agents import prompt
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
-from automotive_cosim.agents.marks import png
+from automotive_cosim.agents.marks import png, road
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.agents.thoughts import spoken
 from automotive_cosim.agents.written import written
@@ -116,7 +116,7 @@ class Caller:
     def _ask(self, seen: Observation) -> None:
         pictures: tuple[bytes, ...] = ()
         if seen.screenshot is not None and self._asking.chat_model.sees_pictures:
-            pictures = (png(seen.screenshot),)
+            pictures = (png(seen.screenshot), *road(seen))
         now = self._situation(seen, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, now)
         self._wish = replace(self._wish, text=self._wish.text if self._told else now, pictures=pictures)

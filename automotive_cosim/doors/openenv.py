@@ -17,6 +17,7 @@ from typing import Any
 from openenv.core.env_server import Action, Environment, Observation, State, create_app
 from pydantic import Field
 
+from automotive_cosim.agents.marks import road
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.guard import SameSite
@@ -56,6 +57,7 @@ class CarObservation(Observation):
 
     turn: dict[str, Any] = Field(description="The driver's words, elements, readings, place, and the last result.")
     picture: str | None = Field(None, description="The screen: a PNG in base64; null for who is not given it.")
+    camera: str | None = Field(None, description="The view through the windshield, likewise, with see = camera.")
     functions: list[dict[str, Any]] | None = Field(
         None, description="At the beginning, what can be called, as OpenAI's tools; null without the interface."
     )
@@ -176,6 +178,7 @@ def _observation(
         reward=None if outcome is None else reward_of(outcome),
         turn=told,
         picture=None if picture is None else base64.b64encode(picture).decode(),
+        camera=next((base64.b64encode(each).decode() for each in road(turn.observation)), None),
         functions=functions,
         outcome=outcome,
     )

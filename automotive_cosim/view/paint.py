@@ -207,7 +207,7 @@ class _Painter:
             x, y, _ = face.corners[0]
             colour = face.colour
             if face.shines:
-                colour = _mixed(colour, self._low, 0.7 * _haze(y, self._haze_m))
+                colour = _mixed(colour, self._low, _haze(y, self._haze_m) ** 3)  # lamps reach farther
             else:
                 colour = self._shade(colour, max(y, NEAR_M), x)
             self._draw.polygon(shape, colour)
@@ -388,7 +388,7 @@ class _Painter:
             shines = name in lit
             colour = LAMP_COLOURS[name] if shines else self._shade((54, 54, 52), y0, x0)
             if shines:
-                colour = _mixed(colour, self._low, 0.6 * _haze(y0, self._haze_m))
+                colour = _mixed(colour, self._low, _haze(y0, self._haze_m) ** 3)
                 radius_glow = min(90, max(6, radius * 3))
                 radius_glow -= radius_glow % 3
                 if self._lights_on:
