@@ -20,15 +20,20 @@ import subprocess
 import sys
 import tempfile
 import venv
+import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+
+from automotive_cosim.exchange.catalogs import NAMELESS
+from automotive_cosim.exchange.words import table
 
 TOP = Path(__file__).parents[1]
 SEEN = re.compile(r"<!-- readers, seen by `python -m docs\.outside` -->\n\n(.*?)\n\n<!-- end -->", re.DOTALL)
 HOURS = TOP / "docs" / "reference" / "scenarios.md"
 VSS = TOP / "tests" / "cockpit" / "vss.tsv"
 WORDS = TOP / "agents" / "native" / "words.txt"
+SCHEMA = "{http://www.w3.org/2001/XMLSchema}"
 PLACE = "48.85, 2.35"
 """In France, for the table of opening hours."""
 
@@ -89,6 +94,28 @@ def _readers(scratch: Path, _: argparse.Namespace) -> Iterator[str]:
     before = SEEN.search((TOP / "benchmarks" / "README.md").read_text(encoding="utf-8"))
     assert before is not None
     yield from changed(before[1].splitlines(), now)
+
+
+def _openscenario(scratch: Path, _: argparse.Namespace) -> Iterator[str]:
+    """Every element and attribute of the schemas that two packages have, against the words of the import."""
+    schemas = scratch / "schemas"
+    packages = ("asam-qc-openscenarioxml", "scenariogeneration")
+    command = [sys.executable, "-m", "pip", "install", "-qq", "--no-deps", "--target", schemas, *packages]
+    subprocess.run(command, check=True, capture_output=True)
+    rows, looked = table(), 0
+    for path in sorted(schemas.rglob("*OpenSCENARIO*.xsd")):
+        root = ET.parse(path).getroot()
+        types = {each.get("name"): each for each in root.iter(f"{SCHEMA}complexType")}
+        looked += 1
+        for element in root.iter(f"{SCHEMA}element"):
+            tag, made = element.get("name", ""), types.get(element.get("type"), element)
+            row = rows.get(tag, NAMELESS)
+            for kind, known, sign in (("attribute", row.attributes, "@"), ("element", row.parts, "")):
+                names = {each.get("name", "") for each in made.iter(f"{SCHEMA}{kind}") if each is not element}
+                yield from (f"{path.relative_to(schemas)}: {tag} has {sign}{name}, which has no word"
+                            for name in sorted(names - known.keys()))  # fmt: skip
+    if looked < len(packages):
+        yield f"only {looked} schemas were found"
 
 
 def _hours(scratch: Path, _: argparse.Namespace) -> Iterator[str]:
@@ -245,6 +272,11 @@ TABLES = {
     "hours": Outside(
         "docs/reference/scenarios.md", ("opening-hours-py==2.1.4", "npm:opening_hours==3.15.0"), _hours
     ),
+    "openscenario": Outside(
+        "automotive_cosim/exchange/openscenario.txt",
+        ("asam-qc-openscenarioxml==1.0.0", "scenariogeneration==0.16.7"),
+        _openscenario,
+    ),
     "readers": Outside(
         "benchmarks/README.md",
         (
@@ -267,19 +299,19 @@ def main() -> None:
     parser.add_argument("names", nargs="*", choices=[[], *TABLES], help="run these again, whatever their versions")
     parser.add_argument("--vss", type=Path, help="a checkout of VSS at the tag of a release")
     given = parser.parse_args()
-    for name, table in TABLES.items():
+    for name, each in TABLES.items():
         if given.names and name not in given.names:
             continue
         is_newer = False
-        for package, _, seen in (each.partition("==") for each in table.seen):
+        for package, _, seen in (seen.partition("==") for seen in each.seen):
             now = newest(package)
             is_newer |= now not in ("", seen)
             print(f"{name}: {package} {seen}, {f'now {now}' if now else 'not in an index'}", flush=True)
-        if table.again is None or not (is_newer or given.names):
+        if each.again is None or not (is_newer or given.names):
             continue
         with tempfile.TemporaryDirectory(prefix="automotive-cosim-outside-") as scratch:
-            lines = [*table.again(Path(scratch), given)]
-        print("\n".join([f"  {line}" for line in lines] or [f"  {table.home} says what it says now"]), flush=True)
+            lines = [*each.again(Path(scratch), given)]
+        print("\n".join([f"  {line}" for line in lines] or [f"  {each.home} says what it says now"]), flush=True)
 
 
 if __name__ == "__main__":

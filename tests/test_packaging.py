@@ -51,12 +51,12 @@ def test_every_package_is_found(given):
 
 def test_hints_name_an_extra_as_one_installs_it_from_here(monkeypatch, tmp_path):
     """No index has the package for those who have a checkout; a wheel has no constraints."""
-    extra = "report"
+    extra = "reports"
     monkeypatch.setattr(errors, "CHECKOUT", ROOT)
-    assert errors.install_hint(extra) == "pip install -c constraints.txt -e '.[report]'"
+    assert errors.install_hint(extra) == "pip install -c constraints.txt -e '.[reports]'"
     assert errors.install_hint() in (ROOT / "README.md").read_text(encoding="utf-8").replace("python -m ", "")
     monkeypatch.setattr(errors, "CHECKOUT", tmp_path)
-    assert errors.install_hint(extra) == "pip install 'automotive-cosim[report]'"
+    assert errors.install_hint(extra) == "pip install 'automotive-cosim[reports]'"
 
 
 def test_every_hint_is_made_in_one_place_and_names_an_extra_that_exists(project):
@@ -201,19 +201,18 @@ def test_every_extra_is_explained(project):
     )
 
 
-@pytest.mark.parametrize("door", ["inspect", "verifiers", "openenv"])
-def test_a_door_has_constraints_of_its_own_that_fit_its_extra_and_are_documented(project, door):
+def test_harnesses_have_constraints_of_their_own_that_fit_their_extra_and_are_documented(project):
     from packaging.requirements import Requirement
 
     pinned = {}
-    for line in (ROOT / "constraints" / f"{door}.txt").read_text(encoding="utf-8").splitlines():
+    for line in (ROOT / "constraints/harnesses.txt").read_text(encoding="utf-8").splitlines():
         if not line.startswith("#"):
             name, _, version = line.partition("==")
             pinned[re.sub(r"[-_.]+", "-", name).lower()] = version
-    needed = [*project["project"]["dependencies"], *project["project"]["optional-dependencies"][door]]
+    needed = [*project["project"]["dependencies"], *project["project"]["optional-dependencies"]["harnesses"]]
     for each in map(Requirement, needed):
         if each.marker is None or each.marker.evaluate():
             assert each.specifier.contains(pinned[re.sub(r"[-_.]+", "-", each.name).lower()])
-    command = f"pip install -c constraints/{door}.txt -e '.[{door}]'"
+    command = "pip install -c constraints/harnesses.txt -e '.[harnesses]'"
     assert command in (ROOT / "docs" / "doors.md").read_text(encoding="utf-8")
-    assert f"constraints/{door}.txt" in (ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8")
+    assert "constraints/harnesses.txt" in (ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8")

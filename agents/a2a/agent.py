@@ -223,5 +223,5 @@ def _line(address: str) -> AgentLine:
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("a2a", "httpx", "google"):
             raise
-        raise SetupError(f"the a2a-sdk package is missing; install it with `{install_hint('a2a')}`") from error
+        raise SetupError(f"the a2a-sdk package is missing; install it with `{install_hint('doors')}`") from error
     return AgentLine(address)

@@ -21,7 +21,7 @@ def a2a(**settings: Any) -> None:
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("a2a", "google", "httpx", "starlette", "uvicorn"):
             raise
-        raise SetupError(f"the a2a-sdk package is missing; install it with `{install_hint('a2a')}`") from error
+        raise SetupError(f"the a2a-sdk package is missing; install it with `{install_hint('doors')}`") from error
     told = filled(A2aSettings, settings)
     typer.echo(told.url)
     try:

@@ -55,22 +55,14 @@ class Extra(NamedTuple):
 
 
 EXTRAS = {
-    "a2a": Extra("a2a", "a2a and --agent a2a:http://HOST:PORT"),
-    "browser": Extra("playwright", "the tests of the pages in a browser"),
-    "import": Extra("osmium", "scenarios import and download"),
-    "inspect": Extra("inspect_ai", "inspect eval automotive_cosim/cockpit"),
-    "llm": Extra("httpx2", "--model openai/NAME"),
-    "local": Extra("xllamacpp", "--model local"),
-    "mcp": Extra("mcp", "mcp"),
-    "openenv": Extra("openenv", "doors.openenv"),
-    "osi": Extra("osi_utilities", "export --osi"),
-    "parquet": Extra("pyarrow", "studies and trajectories as Parquet"),
-    "pdf": Extra("typst", "report --safety as a PDF"),
-    "ray": Extra("ray", "eval and study on a cluster"),
-    "report": Extra("matplotlib", "report"),
+    "maps": Extra("osmium", "scenarios import and download"),
+    "models": Extra("httpx2", "--model openai/NAME and --model local"),
+    "reports": Extra("matplotlib", "report, tables as Parquet and PDFs"),
+    "safety": Extra("optuna", "search and export --osi"),
     "rl": Extra("stable_baselines3", "training in Flat-v0 and FlatDrive-v0"),
-    "search": Extra("optuna", "search, but for --sampler random and grid"),
-    "verifiers": Extra("verifiers", "doors.verifiers"),
+    "doors": Extra("mcp", "mcp, a2a and --agent a2a:http://HOST:PORT"),
+    "harnesses": Extra("inspect_ai", "Inspect and verifiers"),
+    "cluster": Extra("ray", "eval and study on many machines"),
 }
 
 
@@ -135,7 +127,7 @@ def _fonts() -> Finding:
     except (SetupError, OSError) as error:
         return Finding("fonts", Health.MISSING, str(error), f"{install_hint()} --force-reinstall")
     if not sets_right_to_left():
-        fix = f"for those: {install_hint('report')}; on Debian also apt-get install libfribidi0"
+        fix = f"for those: {install_hint('reports')}; on Debian also apt-get install libfribidi0"
         return Finding("fonts", Health.OK, "all fonts of the screens, but no Arabic or Hebrew", fix)
     return Finding("fonts", Health.OK, "all fonts of the screens")
 

@@ -20,7 +20,9 @@ from automotive_cosim.cli.options import (
     Seed,
     print_json,
 )
+from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -57,11 +59,13 @@ def drive(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.episode.own_prompt import instructions
-    from automotive_cosim.run.drive import DriveSetup, run_drive
-    from automotive_cosim.run.jobs import DriveJob, Limits
+    from automotive_cosim.run.drive import DriveSetup
+    from automotive_cosim.run.drive_row import DriveTrialRow
+    from automotive_cosim.run.jobs import Limits
     from automotive_cosim.run.record import Recorder, check_folder, stamped_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
+    from automotive_cosim.run.trial import run_trial
 
     under = Conditions.named(given(settings))
     limited = filled(LimitSettings, settings)
@@ -81,17 +85,19 @@ def drive(
         agent=player.name,
         model=player.model,
     )
-    job = DriveJob(setup)
     folder = out or stamped_folder(f"{family}-{player.name}-seed{seed}")
     check_folder(folder, force=force)
-    recorder, road = Recorder(job, folder, {"out": str(folder)}), RoadRecorder(folder, setup.about)
+    recorder, road = Recorder(setup, folder, {"out": str(folder)}), RoadRecorder(folder, setup.about)
     with closing(recorder), closing(road):
-        record = run_drive(job.planned(), setup, player, observers=(recorder, road), wall_s=limited.wall_s)
+        row = run_trial(setup, player, (recorder, road), wall_s=limited.wall_s)
+    if row.error is not None:
+        raise InfrastructureError(row.error)
+    assert isinstance(row, DriveTrialRow)
     if as_json:
-        print_json({**row_json(record.row), "out": str(folder)})
+        print_json({**row_json(row), "out": str(folder)})
         return
     console = Console(highlight=False)
-    _tell(console, record.row)
+    _tell(console, row, recorder.lines[-1]["result"]["timeline"])
     console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
 
 
@@ -111,11 +117,12 @@ def drives(as_json: AsJson = False) -> None:
         typer.echo(f"{'':34} stages {', '.join(family['stages'])}")
 
 
-def _tell(console: Console, row: DriveTrialRow) -> None:
-    """The drive's events and acts in chronological order, what went wrong and why, and its score."""
+def _tell(console: Console, row: DriveTrialRow, timeline: Json) -> None:
+    """The drive's events and acts in chronological order with what became of them, what went wrong and why, and its
+    score."""
     from automotive_cosim.contracts.plain import clock
-    from automotive_cosim.drives.faults import became, faults, key_of, was
-    from automotive_cosim.drives.judge import Worth
+    from automotive_cosim.drives.faults import became, faults, key_of
+    from automotive_cosim.drives.followed import told
 
     lines = [
         (
@@ -126,9 +133,8 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         for event in row.events
     ]
     lines += [
-        (act.time_s, f"  act  {act.words}", was(act, row.events))
-        for act in row.acts
-        if act.worth is not Worth.NEUTRAL
+        (act.time_s, f"  act  {act.words}", came)
+        for act, came in zip(row.acts, told(row.acts, row.events, timeline), strict=True)
     ]
     if key := key_of(row.events):
         console.print(f"In brackets: {key}", markup=False, soft_wrap=True)

@@ -23,7 +23,7 @@ def mcp(**settings: Any) -> None:
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
             raise
-        raise SetupError(f"the mcp package is missing; install it with `{install_hint('mcp')}`") from error
+        raise SetupError(f"the mcp package is missing; install it with `{install_hint('doors')}`") from error
     from automotive_cosim.service import EpisodeService, ServiceLimits
 
     told = filled(McpSettings, settings)

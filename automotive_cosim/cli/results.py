@@ -54,7 +54,7 @@ def _safety(folder: Path, agent: str) -> None:
     page, pdf = write_dossier(folder, subject.agent)
     beside = f" (--agent takes one of the others: {', '.join(subject.others)})" if subject.others else ""
     typer.echo(f"{page} written, about {subject.agent}{beside}; its data in {page.parent / 'data'}")
-    typer.echo(f"{pdf} written" if pdf else f"no PDF: {install_hint('pdf')}")
+    typer.echo(f"{pdf} written" if pdf else f"no PDF: {install_hint('reports')}")
 
 
 @reads_results

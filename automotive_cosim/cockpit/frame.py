@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, lru_cache, partial
+from functools import cache, lru_cache
 from typing import Any
 
 from automotive_cosim.cockpit.app import Where
@@ -11,26 +11,22 @@ from automotive_cosim.cockpit.apps.notifications import wanting
 from automotive_cosim.cockpit.apps.phone.commands import DeclineCall, TakeCall
 from automotive_cosim.cockpit.apps.phone.state import Phone
 from automotive_cosim.cockpit.apps.settings.state import wifi
+from automotive_cosim.cockpit.cards import stepper
+from automotive_cosim.cockpit.commands import Set
+from automotive_cosim.cockpit.controls import CONTROLS
+from automotive_cosim.cockpit.flow import Block, fill
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, Dismiss, Show
 from automotive_cosim.cockpit.notices import lit, lit_in_words
-from automotive_cosim.cockpit.parts import (
-    sign_figure,
-    sign_in_words,
-    speed,
-    speed_unit,
-    stepper,
-    switch,
-    temperature,
-)
 from automotive_cosim.cockpit.registry import apps_in, docked
 from automotive_cosim.cockpit.signals import ADAS, CALL, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import Notice, State
 from automotive_cosim.cockpit.telltales import Telltale
 from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
+from automotive_cosim.cockpit.values import sign_figure, sign_in_words, speed, speed_unit, temperature
 from automotive_cosim.cockpit.widgets import (
     Button,
     Choice,
@@ -343,40 +339,25 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
         for cell, app in zip(cells, offered, strict=True)
     )
     left, front, rear, right = (each.inset(0, 22) for each in (left, front, rear, right))
+
+    def warmth(signal: Signal[float], who: str) -> Block:
+        return stepper(signal, signals, key=f"dock.{who}_temperature", style=Type.LABEL)
+
+    def quick(signal: Signal[bool], where: str, name: str) -> Tile:
+        on = signals[signal]
+        return Tile(
+            key=f"dock.{where}_defroster",
+            description=name,
+            icon=CONTROLS[signal].icon,
+            checked=on,
+            on_tap=Set(signal, not on),
+        )
+
     whole = (
-        *stepper(
-            right if left_hand else left,
-            "dock.driver_temperature",
-            say("Driver's temperature"),
-            HVAC.DRIVER_TEMPERATURE,
-            signals,
-            partial(temperature, signals),
-            Type.LABEL,
-        ),
-        _quick(front, "front", Icon.DEFROST_FRONT, signals),
+        *fill(right if left_hand else left, warmth(HVAC.DRIVER_TEMPERATURE, "driver")),
+        *fill(front, quick(HVAC.FRONT_DEFROSTER, "front", say("Front defroster"))),
         *apps,
-        _quick(rear, "rear", Icon.DEFROST_REAR, signals),
-        *stepper(
-            left if left_hand else right,
-            "dock.passenger_temperature",
-            say("Passenger's temperature"),
-            HVAC.PASSENGER_TEMPERATURE,
-            signals,
-            partial(temperature, signals),
-            Type.LABEL,
-        ),
+        *fill(rear, quick(HVAC.REAR_DEFROSTER, "rear", say("Rear defroster"))),
+        *fill(left if left_hand else right, warmth(HVAC.PASSENGER_TEMPERATURE, "passenger")),
     )
     return tuple(translated(widget, signals[HMI.LANGUAGE]) for widget in whole)
-
-
-def _quick(rect: Rect, where: str, icon: Icon, signals: Signals) -> Tile:
-    signal = HVAC.FRONT_DEFROSTER if where == "front" else HVAC.REAR_DEFROSTER
-    tile = switch(rect, f"dock.{where}_defroster", "", icon, signal, signals)
-    return Tile(
-        rect=tile.rect,
-        key=tile.key,
-        description=say("Front defroster") if where == "front" else say("Rear defroster"),
-        icon=icon,
-        checked=tile.checked,
-        on_tap=tile.on_tap,
-    )

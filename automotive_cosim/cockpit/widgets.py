@@ -35,6 +35,8 @@ else:
         return dataclass(unsafe_hash=options.pop("frozen"), **options)
 
 
+NOWHERE = Rect(0, 0, 0, 0)
+"""The box of a widget until ``flow.fill`` gives it one."""
 Tone = Literal["text", "muted", "accent", "good", "warning"]
 """A colour of the palette."""
 
@@ -43,7 +45,7 @@ Tone = Literal["text", "muted", "accent", "good", "warning"]
 class Widget:
     """Common fields of all widgets."""
 
-    rect: Rect
+    rect: Rect = NOWHERE
     key: str = ""
     text: str = ""
     description: str = ""

@@ -1,4 +1,4 @@
-"""The benchmark as an evaluating agent of AgentBeats, over A2A. Needs ``a2a-sdk`` (extra ``a2a``).
+"""The benchmark as an evaluating agent of AgentBeats, over A2A. Needs ``a2a-sdk`` (extra ``doors``).
 
     assessment request  ->  "3 of 8 episodes" ...  ->  artifact: a sentence, and the result as data
 

@@ -72,22 +72,6 @@ class Punctual(_Protocol):  # type: ignore[misc]
             self._late = self.loop.call_later(PATIENCE_S, self._look, self.cycle if self.is_waiting else self)
 
 
-class SameSite:
-    """An application that answers no browser that shows another site: one that asks says where it is."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        """Guards an application that may be called by any name."""
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answers a request, or refuses it."""
-        headers = Headers(scope=scope) if scope["type"] != "lifespan" else Headers({})
-        origin = headers.get("origin")
-        is_other = origin is not None and origin.partition("://")[2] != headers.get("host", "")
-        app = PlainTextResponse(OTHER_SITE, HTTPStatus.FORBIDDEN) if is_other else self._app
-        await app(scope, receive, send)
-
-
 class Guarded:
     """An application that answers requests that name this server, have its token, come from no other site and say
     how long they are: at most ``MOST_BYTES``."""

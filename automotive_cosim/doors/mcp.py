@@ -1,7 +1,7 @@
 """A server of the Model Context Protocol: any assistant that speaks it can sit at the cockpit.
 
 Every request stands alone, as the protocol has it since 2026: ``start`` returns an ``episode_id``, and every other
-tool takes it. Needs the ``mcp`` package (extra ``mcp``).
+tool takes it. Needs the ``mcp`` package (extra ``doors``).
 """
 
 from __future__ import annotations

@@ -136,10 +136,6 @@ def trial(
     return EpisodeSpec(str(task), half, scenario, seed=seed or 0, conditions=under)
 
 
-SCENARIOS = "AUTOMOTIVE_COSIM_SCENARIOS"
-"""Environment variable with the folder of the owner's own scenarios."""
-
-
 def own_scenario(name: str | None, folder: Path | None) -> str | None:
     """What a client of a server names as a scenario: a shipped one, or one in the folder that the owner said.
 

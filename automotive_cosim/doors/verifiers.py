@@ -3,7 +3,7 @@
     vf-eval automotive-cosim-verifiers --env.taskset.tasks safety
 
 Each rollout gets a server of its own, which drives to the hand-over and then offers ``observe`` and ``act``. There
-is no ``start``: a model does not choose its task. Needs the package ``verifiers`` (extra ``verifiers``).
+is no ``start``: a model does not choose its task. Needs the package ``verifiers`` (extra ``harnesses``).
 """
 
 # pyright: reportMissingImports=false

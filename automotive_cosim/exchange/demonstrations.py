@@ -148,7 +148,7 @@ def write(steps: Iterable[Demonstrated], target: Path) -> int:
     """Writes demonstrations as Parquet, and returns how many steps they have.
 
     Raises:
-        SetupError: the extra ``parquet`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     try:
         import pandas as pd

@@ -34,7 +34,7 @@ from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.formats.writing import copy
 from automotive_cosim.run.road import Second
 
-NEEDS = f"OSI traces need the extra osi: {install_hint('osi')}"
+NEEDS = f"OSI traces need the extra osi: {install_hint('safety')}"
 AROUND_M = 200.0
 """Lanes and traffic lights within this distance of the car are in a message: our choice, as each repeats them."""
 SHARPEST = 0.25
@@ -69,7 +69,7 @@ def trace_name(recording: Recording) -> str:
     """The name that OSI recommends, without its end: time of the first second, kind, versions, number of messages.
 
     Raises:
-        SetupError: the extra ``osi`` is not installed.
+        SetupError: the extra ``safety`` is not installed.
     """
     osi, protobuf = (version.replace(".", "") for version in _versions())
     begins = recording.road.seconds[0].local_time
@@ -86,7 +86,7 @@ def write_osi(recording: Recording, target: Path, road: Path | None = None) -> N
         road: the road's OpenDRIVE file, which the messages then name.
 
     Raises:
-        SetupError: the extra ``osi`` is not installed.
+        SetupError: the extra ``safety`` is not installed.
         OSError: it cannot be written.
     """
     osi, protobuf = _versions()
@@ -119,7 +119,7 @@ def _versions() -> tuple[str, str]:
     """Of OSI's messages, and of the package that writes them.
 
     Raises:
-        SetupError: the extra ``osi`` is not installed.
+        SetupError: the extra ``safety`` is not installed.
     """
     try:
         import osi_utilities  # noqa: F401, whether it is there

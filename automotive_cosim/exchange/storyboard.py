@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
@@ -22,8 +22,9 @@ CLOUDS = {"free": 0.0, "cloudy": 60.0, "overcast": 100.0, "rainy": 100.0, "skyOf
 """Cover in per cent by the former attribute ``cloudState``."""
 VIOLENT_MM_H = 50.0
 """The rain whose share the former attribute ``intensity`` is: from here on the Met Office calls it violent."""
-DRIVEN = "car", "van", "truck", "bus"
+DRIVEN = "car", "van", "truck", "bus", "motorbike"
 """Categories of vehicles whose place a car of their length takes."""
+TRAILERS = "trailer", "semitrailer"
 BELOW = {"greaterThan": False, "greaterOrEqual": False, "lessThan": True, "lessOrEqual": True}
 BEGUN, ENDED = ("startTransition", "runningState"), ("endTransition", "completeState")
 """States of the storyboard's elements."""
@@ -61,6 +62,8 @@ class ReadStory:
     road: Path | None
     entities: dict[str, ScriptEntity] = field(default_factory=dict)
     ego: str = ""
+    pulled: set[str] = field(default_factory=set)
+    """Entities that are trailers: parts of what pulls them."""
     start: datetime | None = None
     skies: list[tuple[float, Weather]] = field(default_factory=list)
     names: dict[int, str] = field(default_factory=dict)
@@ -90,9 +93,12 @@ def read_story(file: Path, ego: str) -> ReadStory:
     logic = (root.find("RoadNetwork") or root).find("LogicFile")
     story = ReadStory(root, None if logic is None else logic.beside("filepath"), ego=ego)
     for entities in root.all("Entities"):
-        for entity in entities.all("ScenarioObject"):
-            made = _entity(entity)
-            story.entities[made.name] = made
+        every = {entity.text("name"): entity for entity in entities.all("ScenarioObject")}
+        for entity in every.values():
+            if (made := _entity(entity, every, story)) is not None:
+                story.entities[made.name] = made
+        for name in every.keys() - story.entities.keys() - story.pulled:
+            raise every[name].refused(f"named {name} is a trailer that nothing pulls; remove it")
     board = root.part("Storyboard")
     if (init := board.find("Init")) is not None:
         _init(init.part("Actions"), story)
@@ -104,16 +110,38 @@ def read_story(file: Path, ego: str) -> ReadStory:
     return story
 
 
-def _entity(entity: XmlElement) -> ScriptEntity:
+def _entity(entity: XmlElement, every: Mapping[str, XmlElement], story: ReadStory) -> ScriptEntity | None:
+    """None for a trailer, which is a part of what pulls it."""
     vehicle = entity.find("Vehicle") or entity.part("MiscObject")
-    if vehicle.tag == "Vehicle":
-        vehicle.word("vehicleCategory", *DRIVEN)
-    trailer = vehicle.find("Trailer")
-    if trailer is not None and trailer.part("TrailerRef").text("entityRef"):
-        raise trailer.refused("is outside what is imported; remove it")
+    if vehicle.tag == "Vehicle" and vehicle.word("vehicleCategory", *DRIVEN, *TRAILERS) in TRAILERS:
+        return None
     box = vehicle.part("BoundingBox")
-    length_m = box.part("Dimensions").number("length")
-    return ScriptEntity(entity.text("name"), entity, box.part("Center").number("x") + length_m / 2, length_m)
+    front_m = box.part("Center").number("x") + box.part("Dimensions").number("length") / 2
+    return ScriptEntity(entity.text("name"), entity, front_m, front_m - _rear_m(vehicle, every, story))
+
+
+def _rear_m(vehicle: XmlElement, every: Mapping[str, XmlElement], story: ReadStory) -> float:
+    """How far before its reference point a vehicle ends, with the trailers behind it; less than 0."""
+    box = vehicle.part("BoundingBox")
+    ends_m = box.part("Center").number("x") - box.part("Dimensions").number("length") / 2
+    hitch, coupler, trailer = (vehicle.find(name) for name in ("TrailerHitch", "TrailerCoupler", "Trailer"))
+    for part in filter(None, (hitch, coupler)):  # of account only where something is pulled
+        part.number("dx")
+    if trailer is None:
+        return ends_m
+    pulled: XmlElement | None = trailer.find("TrailerRef") or trailer.part("Trailer")
+    if pulled is not None and pulled.tag == "TrailerRef":
+        if not (name := pulled.text("entityRef")):
+            return ends_m
+        if (pulled := every.get(name)) is None or name in story.pulled:
+            raise trailer.refused(f"names {name!r}, which is no entity, or is pulled already")
+        story.pulled.add(name)
+    assert pulled is not None
+    pulled.text("name", "")
+    behind = pulled.part("Vehicle")
+    behind.word("vehicleCategory", *TRAILERS)
+    hangs_m = vehicle.part("TrailerHitch").number("dx") - behind.part("TrailerCoupler").number("dx")
+    return min(ends_m, hangs_m + _rear_m(behind, every, story))
 
 
 def _named(story: ReadStory, element: XmlElement) -> ScriptEntity:
@@ -130,6 +158,10 @@ def _init(actions: XmlElement, story: ReadStory) -> None:
     for part in actions.only("GlobalAction", "Private"):
         if part.tag == "GlobalAction":
             _environment(part.one("EnvironmentAction"), 0.0, story)
+            continue
+        if part.text("entityRef") in story.pulled:
+            for action in part.all("PrivateAction"):
+                action.one("TeleportAction").take()
             continue
         entity = _named(story, part)
         for action in part.all("PrivateAction"):
@@ -354,7 +386,7 @@ def _by_value(by: XmlElement, shared: Waited, story: ReadStory) -> Iterator[list
         if state in ENDED:
             yield [shared | {"what": "ended", "of": event} for event in dict.fromkeys(event for event, _ in events)]
         elif kind == "story":
-            raise what.refused(f"waits for the story {name!r} to begin, which is not imported; name an act")
+            yield [shared | {"what": "time", "value": 0.0, "below": False}]  # it begins with the storyboard
         else:  # a group of manoeuvres and a manoeuvre begin with their act
             begins = dict.fromkeys(event if kind in ("event", "action") else act for event, act in events)
             yield from ([shared | {"what": "begun", "of": each}] for each in begins)

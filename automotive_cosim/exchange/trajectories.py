@@ -15,7 +15,7 @@ from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.formats.writing import drafted, write_whole
 from automotive_cosim.formats.xml import write_xml
 
-NEEDS = f"Parquet needs pandas and pyarrow: {install_hint('parquet')}"
+NEEDS = f"Parquet needs pandas and pyarrow: {install_hint('reports')}"
 COLUMNS = ("at_s", *(entry.name for entry in fields(SeenVehicle)))
 """Those of the tables; times are those of the record: 0 is the hand-over, or a drive's departure."""
 
@@ -40,7 +40,7 @@ def write_parquet(recording: Recording, target: Path) -> None:
     """Writes them as Parquet.
 
     Raises:
-        SetupError: the extra ``parquet`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     try:
         import pandas as pd
@@ -53,7 +53,7 @@ def write_frame(frame: Any, target: Path) -> None:
     """Writes a data frame as Parquet.
 
     Raises:
-        SetupError: the extra ``parquet`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     try:
         with drafted(target) as file:

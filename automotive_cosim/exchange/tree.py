@@ -97,6 +97,12 @@ class XmlElement:
             raise self.refused(f"names {given[:80]!r}, which is not beside it; copy it there")
         return self.path.parent / given
 
+    def take(self) -> None:
+        """Takes all in it for read: it says nothing that does not follow from elsewhere."""
+        self.taken.update(self.attributes, (part.tag for part in self.parts))
+        for part in self.parts:
+            part.take()
+
     def text(self, name: str, otherwise: str | None = None) -> str:
         """The value of an attribute, with the values of parameters.
 

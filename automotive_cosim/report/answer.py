@@ -69,8 +69,9 @@ def _ranking(results: Results) -> str:
     best, *others = sorted(ranked, key=lambda each: -(rate_of(rows[each]).value or 0.0))
     if not others:
         found = rate_of(rows[best])
+        beside = f", {found.not_run:,} not run" if found.not_run else ""
         share = "" if found.value is None else f" ({found.value:.0%}{_bounds(found.interval)})"
-        return f"{best.label} solves {found.successes} of {counted(found.planned, unit)}{share}"
+        return f"{best.label} solves {found.successes} of {counted(found.ran, unit)}{share}{beside}"
     of = f", best of {len(ranked)}" if len(ranked) > 2 else ""
     return _against(best, others[0], rows[best], rows[others[0]], unit) + of
 

@@ -146,7 +146,7 @@ def require_plots() -> None:
         raise SetupError(NEEDS)
 
 
-NEEDS = f"plots need matplotlib: {install_hint('report')}"
+NEEDS = f"plots need matplotlib: {install_hint('reports')}"
 
 
 def _dimensions(results: Results) -> Drawing:

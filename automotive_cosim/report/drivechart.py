@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import clock
 from automotive_cosim.drives.faults import WHY_VOID, beside, faults
+from automotive_cosim.drives.followed import followed
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Chart, Drawing
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -58,8 +59,6 @@ MOST_ACTS = 40
 """Acts of which the chart says what came; all of them are in the results."""
 NEAR_S = 3.0
 """Time to collision below which a driver is exposed; marked by a line."""
-ANSWER_S = 8.0
-"""Within this time after an act, what the driver does is the answer to it."""
 
 
 def timeline_chart(row: DriveTrialRow, timeline: Json, title: str = "") -> Chart:
@@ -78,7 +77,11 @@ def timeline_chart(row: DriveTrialRow, timeline: Json, title: str = "") -> Chart
 
 def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:
     kinds = _kinds(row.events, row.acts)
-    told = [_told(number, act, row.events, timeline) for number, act in enumerate(row.acts[:MOST_ACTS], 1)]
+    came = followed(row.acts, timeline)
+    told = [
+        _told(number, act, row.events, each.words)
+        for number, (act, each) in enumerate(zip(row.acts[:MOST_ACTS], came, strict=False), 1)
+    ]
     room = round((width_in - LABELS_IN) * CHARACTERS_AN_INCH)
     lost = [fault.line for fault in faults(row.events, row.acts) if fault.kind][:MOST_ACTS]
     lines = [
@@ -165,19 +168,14 @@ def _say_unwatched(axes: Axes, timeline: Json, rows: int) -> None:
     )
 
 
-def _told(number: int, act: JudgedAct, events: Sequence[JudgedEvent], timeline: Json) -> str:
-    """What an act said, what it was, and what the driver did."""
-    answers = [
-        text.removeprefix("driver ")
-        for time_s, text in timeline.get("driver", ())
-        if act.time_s <= time_s <= act.time_s + ANSWER_S
-    ]
+def _told(number: int, act: JudgedAct, events: Sequence[JudgedEvent], came: str) -> str:
+    """What an act said, what it was, and what became of it."""
     what = f"{act.worth}" + (f": {act.about.replace('_', ' ')}" if act.about else "")
     reasons = "; ".join(filter(None, (act.reason, *beside(act, events))))
     what += f" ({reasons})" if reasons else ""
     if act.worth is Worth.RIGHT and _came_to_nothing(act, events):
         what += ", which was never due: no point"
-    return f"{number}. {clock(act.time_s)} {act.words}: {what}" + (f"; {answers[0]}" if answers else "")
+    return f"{number}. {clock(act.time_s)} {act.words}: {what}" + (f"; {came}" if came else "")
 
 
 def _came_to_nothing(act: JudgedAct, events: Sequence[JudgedEvent]) -> bool:

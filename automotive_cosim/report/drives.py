@@ -14,6 +14,7 @@ from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import faults
+from automotive_cosim.drives.followed import FOLLOWED_S, LATER_S, followed
 from automotive_cosim.drives.judge import FULL_S
 from automotive_cosim.drives.score import Score, together
 from automotive_cosim.formats.writing import make_folder, write_whole
@@ -239,14 +240,15 @@ def told(rows: Sequence[DriveTrialRow], figure: Figure, form: str, *, bounded: b
 # --- tables --------------------------------------------------------------------------------------------------
 
 
-def tables(rows: Sequence[DriveTrialRow]) -> list[Table]:
-    """Every table of the report, the most important first."""
+def tables(rows: Sequence[DriveTrialRow], folder: Path) -> list[Table]:
+    """Every table of the report, the most important first; what became of acts is read from the folder's traces."""
     groups = grouped(rows)
     return [
         table
         for table in (
             _watchers(groups),
             _faults(groups),
+            _acts(groups, folder),
             _kinds(groups),
             _families(groups),
             _effects(groups),
@@ -328,6 +330,37 @@ def _faults(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         "there, from when to when something was due, and what came; of a needless act, what speaks against it of "
         "what could be known, and when it would have been right.",
         heads=6,
+    )
+
+
+def _acts(groups: dict[Contestant, list[DriveTrialRow]], folder: Path) -> Table:
+    """Every act, and what became of it."""
+    lines = []
+    for each, mine in groups.items():
+        for row in mine:
+            timeline = timeline_of(folder, row.id) or {}
+            for act, came in zip(row.acts, followed(row.acts, timeline) if timeline else (), strict=False):
+                when = "" if came.answered_s is None else f"{came.answered_s:.1f}"
+                drove = f"{came.before_kmh:.0f}", f"{came.after_kmh:.0f}", f"{came.over_s:.0f}"
+                lines.append(
+                    (
+                        *(each.label, f"{row.family}, seed {row.seed}", clock(act.time_s), act.words),
+                        *(str(act.worth), came.answer or "none asked", when, came.did, *drove),
+                    )
+                )
+    return Table(
+        "acts",
+        "What became of each act",
+        (
+            *("Watcher", "Drive", "When", "Act", "Judged", "Driver", "After s", "Did"),
+            *("km/h at it", f"km/h {LATER_S:.0f} s later", f"s over in {FOLLOWED_S:.0f} s"),
+        ),
+        tuple(lines),
+        "Judged: neutral acts are neither asked for nor false. Driver: obeyed; heard, with nothing to do or unable "
+        "to; ignored; unanswered, if the drive ended before or another act took its place; none asked, of what the "
+        f"car does by itself. The last column counts the seconds above the limit in the {FOLLOWED_S:.0f} s after "
+        "the act: an act in time whose driver goes on speeding shows here.",
+        heads=8,
     )
 
 
@@ -454,7 +487,7 @@ def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, Chart]:
     Raises:
         OSError: they cannot be written.
         UserError: a trace cannot be read.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     plots: dict[str, Chart] = {}
     for row in sorted(rows, key=lambda row: (row.value is None, row.value or 0.0)):

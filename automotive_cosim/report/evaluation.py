@@ -48,7 +48,7 @@ def write_report(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not an evaluation's, has no episodes yet, or cannot be written.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     require_plots()
     results = read_results(folder)
@@ -57,7 +57,7 @@ def write_report(folder: Path) -> Path:
     found = findings.classes(results)
     made = all_tables(results, found) if results.rows else []
     plots = charts(results.shared()) if results.rows else {}
-    of_drives = drives.tables(results.drives)
+    of_drives = drives.tables(results.drives, folder)
     try:
         with drafted(page := folder / "report.html") as file:
             write_files(folder, (*made, *of_drives), plots.values())

@@ -135,7 +135,7 @@ def contestant(row: TrialRow) -> Contestant:
 
 
 def standings(results: Results) -> list[str]:
-    """A line per contestant: what it won out of what was planned, in all and in held-out phrasings, and what was
+    """A line per contestant: what it won out of what was run, in all and in held-out phrasings, and what was
     not judged."""
     return [f"{each.label}: {_won(results.planned_of(each))}" for each in results.contestants]
 
@@ -154,7 +154,9 @@ def _count(rows: Sequence[EpisodeRow]) -> str:
         if each:
             beside = not_judged(sum(row.success is None and row.has_run for row in each), _waiting(each))
             won = sum(row.has_succeeded for row in each)
-            counts.append(f"{won} of {counted(len(each), unit)}" + (f" ({beside})" if beside else ""))
+            counts.append(
+                f"{won} of {counted(len(each) - _waiting(each), unit)}" + (f" ({beside})" if beside else "")
+            )
     return ", ".join(counts)
 
 
@@ -198,7 +200,7 @@ def load_results(folder: Path | str) -> pd.DataFrame:
     try:
         import pandas as pd
     except ImportError as error:
-        raise SetupError(f"load_results needs pandas: {install_hint('report')}") from error
+        raise SetupError(f"load_results needs pandas: {install_hint('reports')}") from error
     found = read_results(Path(folder))
     frame = pd.DataFrame([columns(row) for row in (*found.rows, *found.drives)]).set_index("id")
     judged = [name for name in frame.columns if name == "success" or name.startswith("part_")]

@@ -39,13 +39,13 @@ def bracketed(interval: Interval | None, form: str, factor: float = 1.0) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """The share of successes among planned episodes; errors and episodes that were not run are no successes."""
+    """The share of successes among the episodes that have run; an error is no success."""
 
     successes: int
     judged: int
     errors: int
     interval: Interval | None
-    """Over the planned episodes; None if nothing was judged."""
+    """Over the episodes that have run; None if nothing was judged."""
     not_run: int = 0
 
     @property
@@ -54,9 +54,14 @@ class Rate:
         return self.judged + self.errors + self.not_run
 
     @property
+    def ran(self) -> int:
+        """Judged, or ended in an error."""
+        return self.judged + self.errors
+
+    @property
     def value(self) -> float | None:
         """From 0 to 1; None if nothing was judged."""
-        return self.successes / self.planned if self.judged else None
+        return self.successes / self.ran if self.judged else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +112,7 @@ def distributions() -> Any:
     try:
         from scipy import stats
     except ImportError as error:
-        raise SetupError(f"bounds of rates need scipy: {install_hint('report')}") from error
+        raise SetupError(f"bounds of rates need scipy: {install_hint('reports')}") from error
     return stats
 
 
@@ -136,31 +141,27 @@ def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE
 
 def rate(
     outcomes: Iterable[tuple[Hashable, bool | None]],
-    not_run: Iterable[Hashable] = (),
+    not_run: int = 0,
     confidence: float = CONFIDENCE,
 ) -> Rate:
     """A rate with Wilson's interval at the effective sample size (Korn and Graubard 1998, Survey Methodology 24).
 
     Args:
         outcomes: (cluster, success) of each episode that has run; success None is an error.
-        not_run: the cluster of each further planned episode.
+        not_run: number of further planned episodes.
         confidence: of the interval.
     """
     clusters: dict[Hashable, list[bool]] = defaultdict(list)
-    errors = waiting = 0
+    errors = 0
     for cluster, success in outcomes:
         clusters[cluster].append(success is True)
         errors += success is None
-    for cluster in not_run:
-        clusters[cluster].append(False)
-        waiting += 1
     groups = list(clusters.values())
-    planned, successes = sum(map(len, groups)), sum(map(sum, groups))
-    judged = planned - errors - waiting
-    if not judged:
-        return Rate(0, 0, errors, None, waiting)
+    ran, successes = sum(map(len, groups)), sum(map(sum, groups))
+    if ran == errors:
+        return Rate(0, 0, errors, None, not_run)
     size = effective_size(groups)
-    return Rate(successes, judged, errors, wilson(successes / planned * size, size, confidence), waiting)
+    return Rate(successes, ran - errors, errors, wilson(successes / ran * size, size, confidence), not_run)
 
 
 def effective_size(clusters: Sequence[Sequence[bool]]) -> float:

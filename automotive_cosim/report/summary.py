@@ -28,11 +28,11 @@ DIMENSIONS = {
     Dimension.DRIVING_ALIGNMENT: "Driving alignment",
     Dimension.ENVIRONMENT_ALERTS: "Environment alerts",
 }
-RATES = "Per cent of the planned episodes (95 % interval), then successes/planned."
+RATES = "Per cent of the episodes that were run (95 % interval), then successes/run."
 HOW_RATES = (
-    "In all tables, rates are per cent of the planned episodes, with 95 % Wilson intervals at the effective number "
-    "of episodes (tasks are clusters), then successes/planned episodes. Episodes that errored or were not run "
-    "count as failures; their number is shown separately."
+    "In all tables, rates are per cent of the episodes that were run, with 95 % Wilson intervals at the effective "
+    "number of episodes (tasks are clusters), then successes/episodes run. Those that errored count as failures; "
+    "their number, and that of those not run, is shown separately."
 )
 
 SuccessOf = Callable[[Any], bool | None]
@@ -375,10 +375,10 @@ def replaced(results: Results) -> Table:
 
 
 def rate_of(rows: Iterable[TrialRow], of: SuccessOf = lambda row: row.outcome) -> Rate:
-    """A rate over planned trials; those that have run without a verdict are errors."""
+    """A rate over trials that have run, of which those without a verdict are errors, and how many have not run."""
     listed = list(rows)
-    outcomes = ((row.subject, None if row.outcome is None else of(row)) for row in listed if row.has_run)
-    return rate(outcomes, not_run=(row.subject for row in listed if not row.has_run))
+    ran = [(row.subject, None if row.outcome is None else of(row)) for row in listed if row.has_run]
+    return rate(ran, not_run=len(listed) - len(ran))
 
 
 def rate_cell(rows: Iterable[TrialRow], of: SuccessOf = lambda row: row.outcome) -> Cell:
@@ -401,7 +401,7 @@ def rate_in_words(found: Rate) -> str:
         told = NONE
     else:
         low, high = found.interval.low * 100, found.interval.high * 100
-        told = f"{found.value:.0%} ({low:.0f}–{high:.0f}), {found.successes}/{found.planned}"
+        told = f"{found.value:.0%} ({low:.0f}–{high:.0f}), {found.successes}/{found.ran}"
     return f"{told}, {beside}" if beside else told
 
 

@@ -32,7 +32,7 @@ try:
     from ray.exceptions import RayActorError, RayError, RayTaskError, RuntimeEnvSetupError
     from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 except ImportError as error:
-    raise SetupError(f"the ray package is missing; install it with `{install_hint('ray')}`") from error
+    raise SetupError(f"the ray package is missing; install it with `{install_hint('cluster')}`") from error
 
 OBJECT_STORE_BYTES = 256 * 1024**2
 """Shared memory of our own cluster: the files of an episode and its screenshots take a few megabytes."""

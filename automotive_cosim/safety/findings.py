@@ -131,7 +131,8 @@ def _failures(found: Hunt) -> Table:
         "Minimal failures",
         ("No.", "Fails with", "What is missing", "Beside it", "A careful watcher", "Samples it explains"),
         tuple(lines),
-        f"Each failed {REPEATS} times of {REPEATS}. Factors that are not named are nominal; numbers are bisected. "
+        f"Each failed {REPEATS} times of {REPEATS}, and what is beside it did not. Factors that "
+        "are not named are nominal; numbers are bisected. "
         "The careful watcher is the reference: rule-perfect on drives, oracle on tasks. failures/NN.toml replays "
         "the failure and what is beside it, the nearest point that does not fail: automotive-cosim eval --plan.",
         heads=5,

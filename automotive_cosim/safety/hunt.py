@@ -12,7 +12,7 @@ from automotive_cosim.safety.samplers import Sampler
 from automotive_cosim.safety.space import FactorRange, FactorValue, PointKey, SearchPoint, Space, key_of, said
 
 REPEATS = 3
-"""Runs of a failure; it counts if all of them fail."""
+"""Runs of a failure, which counts if all of them fail, and of what is beside it, which counts if none does."""
 BISECTIONS = 4
 """Halvings between a number that fails and the nominal one: to a sixteenth of the distance."""
 
@@ -73,7 +73,7 @@ class MinimalFailure:
     changed: tuple[str, ...]
     """The factors that it needs; empty if the nominal point fails."""
     neighbour: SearchPoint | None
-    """The nearest point found that does not fail; None if there is none."""
+    """The nearest point found that does not fail, however often it is run; None if there is none."""
     differs: str
     """The one factor in which the two differ."""
     why: str
@@ -242,9 +242,17 @@ class _Runner:
         """Whether a point has not been run."""
         return (key_of(point), 0) not in self._known
 
+    def again(self, point: SearchPoint) -> Iterator[TriedOutcome]:
+        """What comes of a point that has been run, each further time."""
+        return (self(Phase.REPEAT, point, repeat).outcome for repeat in range(1, REPEATS))
+
     def is_steady(self, point: SearchPoint) -> bool:
-        """Whether a point fails each time."""
-        return all(self(Phase.REPEAT, point, repeat).outcome.failed for repeat in range(1, REPEATS))
+        """Whether a point that failed does so each time."""
+        return all(outcome.failed for outcome in self.again(point))
+
+    def holds(self, point: SearchPoint) -> bool:
+        """Whether a point that did not fail never does."""
+        return all(outcome.held for outcome in self.again(point))
 
 
 def _reduce(run: _Runner, first: Tried, most: int) -> None:
@@ -262,25 +270,28 @@ def _sort_out(run: _Runner, first: Tried, most: int) -> None:
     elif len(found.minimal) >= most:
         found.not_reduced.append(first)
     else:
-        made = minimise(run, first)
-        if made.point != first.point and not run.is_steady(made.point):
-            found.unsteady.append(first)
-        else:
-            found.minimal.append(made)
+        found.minimal.append(minimise(run, first))
 
 
 def minimise(run: _Runner, first: Tried) -> MinimalFailure:
-    """Takes factors back to nominal while it still fails, then bisects the numbers that are left."""
+    """Takes factors back to nominal while it still fails, then bisects the numbers that are left.
+
+    Each step is one run; of its results the first that are no chance are taken, the smallest and the nearest.
+
+    Args:
+        run: runs points.
+        first: a failure that fails each time.
+    """
     space = run.found.space
     point: dict[str, FactorValue] = dict(first.point)
-    passing: list[Tried] = []
-    last = first
+    failing, passing = [first], list[Tried]()
     for factor in sorted(space.factors, key=lambda each: isinstance(each, FactorRange)):
         if point[factor.name] == factor.nominal:
             continue
         tried = run(Phase.MINIMISE, point | {factor.name: factor.nominal})
         if tried.outcome.failed:
-            point, last = dict(tried.point), tried
+            point = dict(tried.point)
+            failing.append(tried)
         elif tried.outcome.held:
             passing.append(tried)
     for factor in space.factors:
@@ -294,12 +305,15 @@ def minimise(run: _Runner, first: Tried) -> MinimalFailure:
                     break
                 tried = run(Phase.MINIMISE, point | {factor.name: middle})
                 if tried.outcome.failed:
-                    point, last, bad = dict(tried.point), tried, factor.unit(middle)
+                    point, bad = dict(tried.point), factor.unit(middle)
+                    failing.append(tried)
                 elif tried.outcome.held:
                     passing.append(tried)
                     good = factor.unit(middle)
                 else:
                     break
+    last = next(each for each in reversed(failing) if each is first or run.is_steady(each.point))
+    point = dict(last.point)
     neighbour, differs = _neighbour(run, point, passing)
     changed = tuple(each.name for each in space.factors if point[each.name] != each.nominal)
     return MinimalFailure(
@@ -311,13 +325,13 @@ def minimise(run: _Runner, first: Tried) -> MinimalFailure:
         last.outcome.why,
         last.outcome.trial,
         "" if neighbour is None else neighbour.outcome.trial,
-        neighbour is None or neighbour.outcome.passed,
+        neighbour is None or all(each.passed for each in (neighbour.outcome, *run.again(neighbour.point))),
     )
 
 
 def _neighbour(run: _Runner, point: SearchPoint, passing: Sequence[Tried]) -> tuple[Tried | None, str]:
-    """The nearest point that differs in one factor and passes, or else has nothing due: known, or made of those
-    that nearly do."""
+    """The nearest point that differs in one factor and passes each time, or else has nothing due: known, or made of
+    those that nearly do."""
     space = run.found.space
     made: list[Tried] = []
     for tried in passing:
@@ -325,7 +339,8 @@ def _neighbour(run: _Runner, point: SearchPoint, passing: Sequence[Tried]) -> tu
             near = run(Phase.MINIMISE, {**point, name: tried.point[name]})
             if near.outcome.held:
                 made.append(near)
-    nearest = min(made, key=lambda each: (not each.outcome.passed, space.distance(each.point, point)), default=None)
+    made.sort(key=lambda each: (not each.outcome.passed, space.distance(each.point, point)))
+    nearest = next((each for each in made if run.holds(each.point)), None)
     return nearest, "" if nearest is None else next(_differing(nearest.point, point))
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.drives.judge import EventOutcome, JudgedEvent
+from automotive_cosim.drives.judge import EventOutcome, JudgedEvent, Worth
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.trial_row import TrialRow
@@ -97,7 +97,10 @@ def _of_drive(row: DriveTrialRow, rule: FailureRule) -> tuple[float | None, str]
     of_rule = [event for event in row.events if not rule.events or event.kind in rule.events]
     events = [event for event in of_rule if event.outcome.counts or event.lookalike]
     wrong = [event for event in events if _is_wrong(event)]
-    nuisances = 0 if rule.events else sum(act.worth.is_nuisance for act in row.acts)
+    nuisances = sum(act.worth.is_nuisance for act in row.acts)
+    right = sum(act.worth is Worth.RIGHT for act in row.acts)
+    if rule.events and (nuisances <= right or not any(event.outcome.counts for event in events)):
+        nuisances = 0  # whoever is more often wrong than right has met the event by chance
     if not wrong and not nuisances and all(event.lookalike for event in events):
         return None, _nothing_due(of_rule, rule)
     if rule.drive_value_below is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from automotive_cosim.errors import SetupError, UnknownNameError, install_hint
 from automotive_cosim.safety.space import Factor, FactorChoices, FactorValue, SearchPoint, Space, key_of
 
-NEEDS = f"the sampler {{}} needs the extra search: {install_hint('search')}"
+NEEDS = f"the sampler {{}} needs the extra safety: {install_hint('safety')}"
 SHARE = 0.25
 """Share of its points that a sampler that learns spreads evenly first."""
 LEAST_EVEN = 8

@@ -137,7 +137,8 @@ class FailureRule:
     drive_value_below: Annotated[float, Le(100)] | None = None
     """A drive fails if its value is below this; None: if an event was not met in time or an act was a nuisance."""
     events: tuple[str, ...] = ()
-    """Kinds of events that count, and no nuisances; empty for all of both."""
+    """Kinds of events that count, and nuisances only where they outnumber the right acts while something is due:
+    such events were met by chance. Empty for all of both."""
     ttc_below_s: Annotated[float, Ge(0)] | None = None
     """Fails too if the time to collision with the vehicle in front was ever below this."""
 
@@ -145,7 +146,7 @@ class FailureRule:
     def words(self) -> str:
         """What counts as a failure of a drive, in words."""
         kinds = ", ".join(self.events).replace("_", " ")
-        of_kinds = f"an event that was not met in time, of these kinds alone: {kinds}"
+        of_kinds = f"an event that was not met in time, or met amid more nuisances than right acts, of: {kinds}"
         every = of_kinds if self.events else "an event of any kind that was not met in time, or a nuisance"
         if self.drive_value_below is not None:
             every = f"a value below {self.drive_value_below:g}"

@@ -57,7 +57,8 @@ def driven(running: Running) -> Means:
 
 def _now(running: Running) -> Means:
     running.step()
-    speeds = [speed_mps for _, speed_mps, _ in running.sumo.on_lanes()]
+    sumo = running.sumo
+    speeds = [sumo.speed(vehicle) for vehicle in sumo.vehicle_ids() if sumo.lane_of(vehicle)]
     return float(len(speeds)), fmean(speeds) if speeds else 0.0
 
 

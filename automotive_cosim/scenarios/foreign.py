@@ -13,6 +13,7 @@ from pathlib import Path
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, WeatherAt
+from automotive_cosim.formats.words import shown
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.scenarios.relocation import zone_of
 from automotive_cosim.scenarios.routes import drawn_trips
@@ -31,6 +32,7 @@ from automotive_cosim.traffic.options import (
     stated_and_set,
 )
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
+from automotive_cosim.traffic.sumo import VERSION
 
 DAY = datetime(2026, 6, 16)
 """A Tuesday in June; SUMO's files have no date."""
@@ -92,7 +94,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         count = vehicles_per_hour(network, random_per_km_h)
         notes.append(f"{path.name} has no traffic of its own: {count:.0f} vehicles per hour are drawn")
     sumo = _sumo(configuration, random_per_km_h)
-    notes += _kept_and_not(configuration, sumo, network)
+    notes += (*_kept_and_not(configuration, sumo, network), *added.unread)
     name = re.sub(r"\.(net\.xml|sumocfg|xml)$", "", path.name.removesuffix(".gz"))
     return Scenario(
         name=name if name != "run" else path.absolute().parent.name,
@@ -178,10 +180,17 @@ class _Elements:
 
     def __init__(self) -> None:
         self.names: set[str] = set()
+        self.unread: list[str] = []
+        """What rerouters have in files of their own, which SUMO passes over without a word."""
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         """Takes the start of an element."""
         self.names.add(name)
+        if name == "rerouter" and (file := attributes.get("file")):
+            self.unread.append(
+                f"SUMO {VERSION} does not read the file {shown(file)} of rerouter {shown(attributes.get('id'))}: "
+                "write its <interval> elements inside the <rerouter>"
+            )
 
     def end(self, name: str) -> None:
         """Takes its end."""

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import KMH_PER_MPS, Json
-from automotive_cosim.drives.faults import OUTCOMES, WHY_VOID, times, was
+from automotive_cosim.drives.faults import OUTCOMES, WHY_VOID, times
+from automotive_cosim.drives.followed import told
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
@@ -83,7 +84,7 @@ class Content:
             **head,
         }
         if head["kind"] == "drive":
-            return shared | _drive(row)
+            return shared | _drive(row, result.get("timeline") or {})
         return shared | {
             "parts": dict(PARTS),
             "verdict": result.get("verdict"),
@@ -288,7 +289,7 @@ class Content:
         ]
 
 
-def _drive(row: Json) -> Json:
+def _drive(row: Json, timeline: Json) -> Json:
     """What a page shows of a drive alone: its events and acts once it is over."""
     judged = from_json(DriveTrialRow, row) if row else None
     events, acts = (judged.events, judged.acts) if judged else ((), ())
@@ -299,7 +300,7 @@ def _drive(row: Json) -> Json:
         "verdict": None,
         "spans": [_span(event, acts) for event in events],
         "acts": [{"at_s": act.time_s, "text": act.words, "worth": act.worth} for act in acts],
-        "timeline": _drive_timeline(events, acts),
+        "timeline": _drive_timeline(events, acts, told(acts, events, timeline)),
         "met": sum(event.outcome.is_credited for event in events),
         "path": (),
         "violations": (),
@@ -337,9 +338,9 @@ def _became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
     return "; ".join((OUTCOMES.get(event.outcome, event.outcome), *times(event, acts)))
 
 
-def _drive_timeline(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct]) -> list[Json]:
-    """Every instant that the page lists, in order."""
-    told = []
+def _drive_timeline(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct], came: Sequence[str]) -> list[Json]:
+    """Every instant that the page lists, in order; ``came`` is what became of each act."""
+    lines = []
     is_explained = False
     for event in sorted(events, key=lambda each: each.observable_s):
         kind = event.kind.replace("_", " ")
@@ -348,11 +349,14 @@ def _drive_timeline(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct]) ->
             is_explained = True
             became += f": {WHY_VOID}"
         what = f"{'look-alike of ' if event.lookalike else ''}{kind}: {event.words} ({became})"
-        told.append((event.observable_s, "event", what))
+        lines.append((event.observable_s, "event", what))
         if event.deadline_s is not None and not event.lookalike:
-            told.append((event.deadline_s, "deadline", f"deadline of {kind}"))
-    told += [(act.time_s, "alert", f"{act.words.replace('_', ' ')} ({was(act, events)})") for act in acts]
-    return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(told)]
+            lines.append((event.deadline_s, "deadline", f"deadline of {kind}"))
+    lines += [
+        (act.time_s, "alert", f"{act.words.replace('_', ' ')} ({became})")
+        for act, became in zip(acts, came, strict=True)
+    ]
+    return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(lines)]
 
 
 def _stamp(folder: Path) -> tuple[tuple[int, int] | None, ...]:

@@ -71,7 +71,7 @@ def _clustered(groups: Sequence[Sequence[float]]) -> Interval:
     try:
         from scipy.special import stdtrit
     except ImportError as missing:
-        raise SetupError(f"intervals require scipy: {install_hint('report')}") from missing
+        raise SetupError(f"intervals require scipy: {install_hint('reports')}") from missing
     sums = np.array([sum(group) for group in groups])
     sizes = np.array([len(group) for group in groups], dtype=float)
     count = sizes.sum()

@@ -56,8 +56,13 @@ def read_mapped(configuration: Configuration, read: Network | None = None) -> Ne
     network = read or read_network(configuration.net)
     closed: dict[str, set[str]] = {CLOSES_EDGE: set(), CLOSES_LANE: set()}
 
+    counts = False
+
     def take(element: str, attributes: dict[str, str]) -> None:
-        if element in closed and closes_to_cars(attributes):
+        nonlocal counts
+        if element == "rerouter":  # the ego is of none of the user's types
+            counts = not (attributes.get("vTypes") or attributes.get("off", "").lower() in TRUE)
+        if counts and element in closed and closes_to_cars(attributes):
             closed[element].add(attributes.get("id", ""))
 
     ground = read_ground(configuration, network.map, take)

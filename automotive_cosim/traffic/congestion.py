@@ -12,9 +12,10 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
+from types import MappingProxyType
 from typing import Protocol, TypeAlias
 
 from automotive_cosim.contracts import OLDEST_NEWS_S, IncidentKind, Limit, RoadAhead, RoadIncident, TrafficLight
@@ -70,6 +71,9 @@ class Free:
     """The edge before each lane through a junction, and the speed of that lane in m/s."""
 
 
+NO_JUNCTIONS = Free(math.inf, MappingProxyType({}))
+
+
 class Flow(Protocol):
     """Gives the speeds of the traffic."""
 
@@ -79,10 +83,6 @@ class Flow(Protocol):
 
     def free_mps(self, edge_id: str) -> float:
         """The speed on an edge without traffic."""
-        ...
-
-    def across(self, edge_id: str) -> float:
-        """The speed through the junction at the end of an edge divided by that without traffic; never 0."""
         ...
 
     def slow_edges(self) -> tuple[tuple[str, float], ...]:
@@ -97,8 +97,7 @@ class Congestion:
         self,
         network: Network,
         vehicles: Callable[[], Iterable[tuple[str, float, DesiredSpeed]]],
-        variable: Collection[str] = (),
-        free: Free | None = None,
+        free: Free = NO_JUNCTIONS,
     ) -> None:
         """Starts at free flow.
 
@@ -106,19 +105,17 @@ class Congestion:
             network: the network.
             vehicles: the lane, inside a junction or not, the speed in m/s and the wanted speed of each vehicle that
                 drives as cars do; those on lanes that are closed to cars are left out here.
-            variable: edges on which the limit may change.
-            free: what a drive without traffic is like. None leaves junctions out, and counts all by the limits.
+            free: what a drive without traffic is like.
         """
         self._edges = network.edges
         self._order = {edge_id: number for number, edge_id in enumerate(network.edges)}
         self._driving = vehicles
         self._free = free
-        self._variable = frozenset(variable)
         self._vehicles: dict[str, float] = {}
         """Smoothed number of vehicles and sum of speeds, for each edge with recent traffic."""
         self._flow: dict[str, float] = {}
         self._free_mps: dict[str, float] = {}
-        """The limit to which that refers, where it is variable."""
+        """The speed without traffic to which that refers."""
         self._keep = math.exp(-SAMPLE_PERIOD_S / MEMORY_S)
         self._slow: tuple[tuple[str, float], ...] = ()
         self._samples: deque[dict[str, Tally]] = deque(maxlen=round((WINDOW_S + OLDEST_NEWS_S) / SAMPLE_PERIOD_S))
@@ -128,7 +125,7 @@ class Congestion:
         keep, vehicles, flow, edges = self._keep, self._vehicles, self._flow, self._edges
         lanes: dict[str, Tally] = {}
         seen: dict[str, Tally] = {}
-        across = {} if self._free is None else self._free.across
+        across = self._free.across
         for lane_id, speed_mps, wanted in self._driving():
             edge_id = lane_id.rpartition("_")[0]
             edge = edges.get(edge_id)
@@ -147,7 +144,7 @@ class Congestion:
         for edge_id in {**vehicles, **seen}:
             count, total_mps = seen.get(edge_id, NOTHING)
             free_mps = self.free_mps(edge_id)
-            if edge_id in self._variable and free_mps != self._free_mps.setdefault(edge_id, free_mps):
+            if free_mps != self._free_mps.setdefault(edge_id, free_mps):
                 self._take_limit(edge_id, free_mps)
             weight = vehicles[edge_id] = vehicles.get(edge_id, 0.0) * keep + count * (1 - keep)
             flow[edge_id] = flow.get(edge_id, 0.0) * keep + total_mps * (1 - keep)
@@ -160,9 +157,6 @@ class Congestion:
 
     def _rated_mps(self, edge_id: str, speed_mps: float, limit_mps: float, wanted: DesiredSpeed) -> float:
         """What a speed on a lane is on the edge's fastest lane, for somebody who wants to drive at the limit."""
-        if self._free is None:
-            free_mps = self._edges[edge_id].speed_mps
-            return speed_mps if limit_mps == free_mps else speed_mps * (free_mps / limit_mps)
         can_pass = len(self._edges[edge_id].lane_ids) > 1
         factor, top_mps = wanted if can_pass else THE_LIMIT
         share = speed_mps / min(factor * limit_mps, top_mps, self._free.top_mps)
@@ -197,12 +191,7 @@ class Congestion:
 
     def free_mps(self, edge_id: str) -> float:
         """The speed on an edge without traffic."""
-        limit_mps = self._edges[edge_id].speed_mps
-        return limit_mps if self._free is None else min(self._free.top_mps, limit_mps)
-
-    def across(self, edge_id: str) -> float:
-        """See ``Flow``."""
-        return 1.0 if self._free is None else self.relative_speed(edge_id)
+        return min(self._free.top_mps, self._edges[edge_id].speed_mps)
 
     def speed_mps(self, edge_id: str) -> float:
         """Mean speed on an edge."""
@@ -355,7 +344,7 @@ def _legs(
         way = ways[index] if after else Crossing(0.0, edge.speed_mps)
         way_s = way.length_m / max(SLOWEST_MPS, way.speed_mps)
         speed_mps, free_mps = flow.speed_mps(edge.edge_id), flow.free_mps(edge.edge_id)
-        across_s = way_s / flow.across(edge.edge_id)
+        across_s = way_s / (speed_mps / free_mps)  # traffic is as slow across the junction at its end
         legs.append(
             _Leg(
                 edge=edge,

@@ -58,8 +58,7 @@ class StagedEmergency(StagedIncident):
     def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
         self._stage, self._incident = stage, incident
         self._car = ""
-        self._drivers: dict[str, tuple[float, str]] = {}
-        """Speed factor and alignment of each other driver before the ambulance."""
+        self._was_there = False
         self._made_way: set[str] = set()
 
     def tick(self, local_time: datetime) -> str:
@@ -75,6 +74,8 @@ class StagedEmergency(StagedIncident):
         what = "ambulance" if self._incident.blue_light else "van"
         kind = stage.kind(what)
         types = stage.sumo.type
+        if not sensor.knows_emergency:
+            stage.drivers.clear()
         if self._incident.blue_light:
             types.setVehicleClass(kind, "emergency")
             types.setShapeClass(kind, "emergency")
@@ -89,18 +90,23 @@ class StagedEmergency(StagedIncident):
         return ""
 
     def _give_back(self) -> None:
-        sumo, vehicle = self._stage.sumo, self._stage.sumo.vehicle
+        sumo, drivers = self._stage.sumo, self._stage.drivers
         running = sumo.vehicle_ids()
-        for each in running:
-            if each not in self._drivers and each not in (self._car, self._stage.ego_id):
-                self._drivers[each] = vehicle.getSpeedFactor(each), vehicle.getLateralAlignment(each)
-            if each in self._drivers and vehicle.getLaneChangeMode(each) == WAYMAKING:
-                self._made_way.add(each)
         is_there = self._car in running
+        if self._was_there and not is_there and not self._made_way:
+            return
+        self._was_there = self._was_there or is_there
+        for each in running:
+            if each == self._stage.ego_id or each == self._car:
+                continue
+            if each not in drivers:
+                drivers[each] = sumo.manner(each)
+            if sumo.vehicle.getLaneChangeMode(each) == WAYMAKING:
+                self._made_way.add(each)
         for each in sorted(self._made_way.intersection(running)):
             if is_there and math.dist(sumo.position(each), sumo.position(self._car)) <= PASSED_M:
                 continue
-            sumo.give_back(each, *self._drivers[each])
+            sumo.give_back(each, drivers[each])
             if not is_there or sumo.edge_of(each) != sumo.edge_of(self._car):
                 self._made_way.remove(each)
 
@@ -112,6 +118,8 @@ class StagedBraking(StagedIncident):
         self._stage, self._incident = stage, incident
         self._has_called = False
         self._braking = ""
+        self._own: tuple[float, float] | None = None
+        """How hard the driver brakes, and how fast he drives, when nothing is staged."""
         self._left_s = 0.0
 
     def tick(self, local_time: datetime) -> str:
@@ -144,6 +152,7 @@ class StagedBraking(StagedIncident):
             slower_s = self._left_s - incident.hold_s
             sumo.vehicle.slowDown(vehicle, min(to_mps, sumo.speed(vehicle)), max(slower_s, 1.0))
             return "the vehicle ahead slows down"
+        self._own = sumo.vehicle.getDecel(vehicle), sumo.vehicle.getSpeedFactor(vehicle)
         sumo.vehicle.setDecel(vehicle, incident.deceleration_mps2)
         sumo.vehicle.setSpeed(vehicle, to_mps)
         return "the vehicle ahead brakes"
@@ -156,6 +165,9 @@ class StagedBraking(StagedIncident):
     def _release(self) -> None:
         with suppress(*self._stage.sumo.refusals):  # it may have left
             self._stage.sumo.vehicle.setSpeed(self._braking, -1.0)
+            if self._own is not None:
+                self._stage.sumo.vehicle.setDecel(self._braking, self._own[0])
+                self._stage.sumo.set_speed_factor(self._braking, self._own[1])
             if self._incident.keeps_lane:
                 self._stage.sumo.vehicle.setLaneChangeMode(self._braking, ANY_LANE_CHANGE)
         self._braking, self._left_s = "", -1.0
@@ -218,11 +230,12 @@ def _move_over(stage: IncidentStage, vehicle: str, lane: str, for_s: float) -> N
 
 
 class _KeptInLane:
-    """Keeps the ego in its lane for a while: SUMO's drivers swerve within a step, where people look first."""
+    """Keeps a driver in a lane for a while, as the ego: SUMO's drivers swerve within a step, where people look
+    first."""
 
-    def __init__(self, stage: IncidentStage, for_s: float) -> None:
-        self._stage, self._left_s = stage, for_s
-        stage.sumo.vehicle.setLaneChangeMode(stage.ego_id, WHEN_ASKED)
+    def __init__(self, stage: IncidentStage, for_s: float, vehicle: str = "", mode: int = WHEN_ASKED) -> None:
+        self._stage, self._left_s, self._vehicle = stage, for_s, vehicle or stage.ego_id
+        stage.sumo.vehicle.setLaneChangeMode(self._vehicle, mode)
 
     def tick(self) -> None:
         """A second has passed."""
@@ -232,11 +245,11 @@ class _KeptInLane:
             self.release()
 
     def release(self) -> None:
-        """Lets it change lanes again; may be called again."""
+        """Lets them change lanes again; may be called again."""
         if self._left_s > 0:
             self._left_s = 0.0
-            with suppress(*self._stage.sumo.refusals):  # the drive may be over
-                self._stage.sumo.vehicle.setLaneChangeMode(self._stage.ego_id, ANY_LANE_CHANGE)
+            with suppress(*self._stage.sumo.refusals):  # they may have left
+                self._stage.sumo.vehicle.setLaneChangeMode(self._vehicle, ANY_LANE_CHANGE)
 
 
 class StagedCutIn(StagedIncident):
@@ -303,12 +316,12 @@ class StagedCutOut(StagedIncident):
         self._called_s, self._is_over = 0.0, False
         self._car, self._leader, self._beside = "", "", ""
         self._standing: RoadIncident | None = None
-        self._kept: _KeptInLane | None = None
+        self._kept: tuple[_KeptInLane, ...] = ()
 
     def tick(self, local_time: datetime) -> str:
         if self._is_over:
-            if self._kept is not None:
-                self._kept.tick()
+            for each in self._kept:
+                each.tick()
             return ""
         return self._approach() if self._standing else self._place()
 
@@ -354,6 +367,8 @@ class StagedCutOut(StagedIncident):
             if is_before and (left_m > soon_m or self._car not in sumo.vehicle_ids()):
                 return ""
             _move_over(self._stage, self._leader, self._beside, CUT_OUT_S)
+            leader = _KeptInLane(self._stage, CUT_OUT_S, self._leader, NO_LANE_CHANGE)
+            self._kept = leader, _KeptInLane(self._stage, SWERVES_AFTER_S)
             self._release()
         except sumo.refusals:  # it has left
             is_before = False
@@ -361,9 +376,9 @@ class StagedCutOut(StagedIncident):
             with suppress(*sumo.refusals):
                 sumo.vehicle.remove(self._car)
             self._standing = None
+            self._let_change()
             return ""
         self._is_over = True
-        self._kept = _KeptInLane(self._stage, SWERVES_AFTER_S)
         return "the vehicle ahead cuts out before a standing car"
 
     def end(self) -> str:
@@ -371,9 +386,12 @@ class StagedCutOut(StagedIncident):
             with suppress(*self._stage.sumo.refusals):  # it may have left
                 self._release()
                 self._stage.sumo.vehicle.setLaneChangeMode(self._leader, ANY_LANE_CHANGE)
-        if self._kept is not None:
-            self._kept.release()
+        self._let_change()
         return ""
+
+    def _let_change(self) -> None:
+        for each in self._kept:
+            each.release()
 
     def _release(self) -> None:
         """The vehicle ahead heeds others again."""

@@ -185,7 +185,7 @@ class Surface:
     """
 
     def __init__(
-        self, sumo: LibSumo, network: Network, left_out: tuple[str, ...], drawn: Container[str] | None = None
+        self, sumo: LibSumo, network: Network, left_out: tuple[str, ...], drawn: Container[str] = ()
     ) -> None:
         """Starts dry.
 
@@ -194,7 +194,7 @@ class Surface:
             network: its roads.
             left_out: types, or prefixes of their names, that stay unchanged.
             drawn: distributions, which SUMO lists among the types, and which stay unchanged too, as does everybody
-                in weather that is not felt. None treats them as types and sets all types in any weather.
+                in weather that is not felt.
         """
         self._sumo = sumo
         self._left_out = left_out
@@ -210,7 +210,7 @@ class Surface:
         """Changes the condition for everything on the road."""
         if condition == self.condition:
             return
-        if self._drawn is not None and not (condition.is_felt or self.condition.is_felt):
+        if not (condition.is_felt or self.condition.is_felt):
             self.condition = condition
             return
         if condition.friction != self.condition.friction:
@@ -218,7 +218,7 @@ class Surface:
                 self._sumo.lane.setFriction(lane, condition.friction)
         self.condition = condition
         for type_id in self._sumo.type.getIDList():
-            if not type_id.startswith(self._left_out) and type_id not in (self._drawn or ()):
+            if not type_id.startswith(self._left_out) and type_id not in self._drawn:
                 self._treat(type_id)
         for vehicle in self._sumo.vehicle.getIDList():
             if not self._sumo.type_of(vehicle).startswith(self._left_out):

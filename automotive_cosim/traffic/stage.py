@@ -13,7 +13,7 @@ from automotive_cosim.traffic.road_weather import Surface
 from automotive_cosim.traffic.script import VehicleScript
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.signs import Signs
-from automotive_cosim.traffic.sumo import LibSumo
+from automotive_cosim.traffic.sumo import LibSumo, Manner
 
 TEMPLATE_TYPE = "automotive_cosim.template"
 """SUMO's default passenger car, unaffected by weather."""
@@ -41,6 +41,8 @@ class IncidentStage:
         self.route_changed = False
         """Whether the ego's route has changed since this was last set to False."""
         self.script = VehicleScript(sumo, ego_id)
+        self.drivers: dict[str, Manner] = {}
+        """How others drove before they made way for the first of those with blue lights on."""
         self._names = 0
         sumo.copy_type(TEMPLATE_TYPE, CAR_TYPE)
 

@@ -14,7 +14,7 @@ from automotive_cosim.traffic.pedals import RefusedError
 from automotive_cosim.traffic.road_weather import G_MPS2
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
-from automotive_cosim.traffic.sumo import HAZARD_SIGNAL, LibSumo
+from automotive_cosim.traffic.sumo import HAZARD_SIGNAL, STRATEGIC, LibSumo
 
 PARKING = 1
 """SUMO's stop flag: off the lane, so that other vehicles can pass."""
@@ -69,6 +69,7 @@ class SumoPedals:
         self._service_mps2: float = sumo.vehicle.getDecel(ego_id)
         self._own_mps2: float = sumo.vehicle.getAccel(ego_id)
         self._alignment = "center"
+        self._strategic: str = sumo.vehicle.getParameter(ego_id, STRATEGIC)
         self._made_way = False
         """Whether there was a vehicle with its blue lights on a step ago."""
         self._expected_mps2 = self._service_mps2
@@ -120,7 +121,7 @@ class SumoPedals:
         """
         is_near = self._sensor.knows_emergency
         if (is_near or self._made_way) and not self._sensor.makes_way:
-            self._sumo.give_back(self._ego, self._factor, self._alignment)
+            self._sumo.give_back(self._ego, (self._factor, self._alignment, self._strategic))
         self._made_way = is_near
         top_mps = self._top_mps
         if self._factor > 1.0:

@@ -12,9 +12,8 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, MutableMapping, Sequence
 from contextlib import contextmanager, redirect_stdout
-from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from automotive_cosim.errors import ScenarioError, SetupError
@@ -37,6 +36,12 @@ BLUE_LIGHT, REROUTING = "bluelight", "rerouting"
 ANY_LANE_CHANGE, WAYMAKING = 1621, 1605
 """SUMO's lane change modes: its default, and what the blue-light device sets."""
 
+STRATEGIC = "laneChangeModel.lcStrategic"
+"""How readily a driver takes the lane of the next turn; the device makes who reacts take none."""
+
+Manner: TypeAlias = tuple[float, str, str]
+"""A driver's speed factor, place in the lane, and ``STRATEGIC``."""
+
 HAZARD_SIGNAL = 4
 """SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
 
@@ -45,7 +50,9 @@ DesiredSpeed: TypeAlias = tuple[float, float]
 """How fast a driver wants to drive: a factor on the limit, and a top speed in m/s."""
 
 THE_LIMIT: DesiredSpeed = (1.0, math.inf)
-NO_WANTS: Mapping[str, DesiredSpeed] = MappingProxyType({})
+
+UNHINDERED_S = 1.0
+"""Who loses less between two looks at the traffic goes as he likes."""
 
 NOW = -1.0
 """SUMO's departure time of a route that is looked for at once."""
@@ -89,6 +96,7 @@ class LibSumo:
         self.lane_of: Callable[[str], str] = compiled("vehicle_getLaneID")
         self.lane_index: Callable[[str], int] = compiled("vehicle_getLaneIndex")
         self.lane_position: Callable[[str], float] = compiled("vehicle_getLanePosition")
+        self.time_loss: Callable[[str], float] = compiled("vehicle_getTimeLoss")
         self.driven: Callable[[str], float] = compiled("vehicle_getDistance")
         self.route: Callable[[str], Sequence[str]] = vehicle.getRoute
         self.route_index: Callable[[str], int] = compiled("vehicle_getRouteIndex")
@@ -141,20 +149,34 @@ class LibSumo:
         self.vehicle_ids: Callable[[], Sequence[str]] = vehicle.getIDList
 
     def on_lanes(
-        self, without: Collection[str] = (), wants: Mapping[str, DesiredSpeed] = NO_WANTS
+        self, without: Collection[str], wants: Mapping[str, DesiredSpeed], stopping: MutableMapping[str, float]
     ) -> Iterator[tuple[str, float, DesiredSpeed]]:
         """The lane, speed and wanted speed of every other vehicle in one; who has parked or is off the road is not.
 
         Args:
-            without: vehicles to leave out.
-            wants: those of which it is known how fast they want to drive; who stops at a stop is left out.
+            without: vehicles to leave out, as is who stands at a stop.
+            wants: how fast those want to drive of whom it is known.
+            stopping: those with planned stops, and the time that each had lost when last seen, by SUMO, for which
+                braking for a stop and setting off again are none; who loses none has no speed below the wanted one.
         """
-        lane_of, speed, stops = self.lane_of, self.speed, self.vehicle.isStopped
+        lane_of, speed, time_loss, stops = (
+            self.lane_of,
+            self.speed,
+            self.vehicle.getTimeLoss,
+            self.vehicle.isStopped,
+        )
         for vehicle in self.vehicle_ids():
-            if vehicle not in without and (lane := lane_of(vehicle)):
-                speed_mps, wanted = speed(vehicle), wants.get(vehicle)
-                if wanted is None or speed_mps or not stops(vehicle):
-                    yield lane, speed_mps, wanted or THE_LIMIT
+            if vehicle in without or not (lane := lane_of(vehicle)):
+                continue
+            speed_mps = speed(vehicle)
+            if not speed_mps and stops(vehicle):
+                stopping[vehicle] = time_loss(vehicle)
+                continue
+            if vehicle in stopping:
+                before_s, stopping[vehicle] = stopping[vehicle], time_loss(vehicle)
+                if stopping[vehicle] - before_s < UNHINDERED_S:
+                    speed_mps = math.inf
+            yield lane, speed_mps, wants.get(vehicle, THE_LIMIT)
 
     def has_device(self, vehicle: str, device: str) -> bool:
         """Whether a vehicle has a device."""
@@ -182,12 +204,19 @@ class LibSumo:
         if self.has_device(vehicle, REROUTING):
             self.set_parameter(vehicle, "device.rerouting.period", "0")
 
-    def give_back(self, vehicle: str, speed_factor: float, alignment: str) -> None:
-        """Gives a driver back what the blue-light device of a vehicle that has passed leaves changed for good: the
-        readiness to overtake, the speed as a factor on the limit, and the place in the lane."""
-        each = self.vehicle
+    def manner(self, vehicle: str) -> Manner:
+        """How a driver drives, as far as the blue-light device changes it."""
+        of = self.vehicle
+        return of.getSpeedFactor(vehicle), of.getLateralAlignment(vehicle), of.getParameter(vehicle, STRATEGIC)
+
+    def give_back(self, vehicle: str, manner: Manner) -> None:
+        """Gives a driver back what the blue-light device of a vehicle that has passed leaves changed for good, or
+        for as long as that is ahead on the same road: the readiness to overtake, the manner of driving."""
+        each, (speed_factor, alignment, strategic) = self.vehicle, manner
         if each.getLaneChangeMode(vehicle) == WAYMAKING:
             each.setLaneChangeMode(vehicle, ANY_LANE_CHANGE)
+        if each.getParameter(vehicle, STRATEGIC) != strategic:
+            self.set_parameter(vehicle, STRATEGIC, strategic)
         if each.getLateralAlignment(vehicle) != alignment:
             each.setLateralAlignment(vehicle, alignment)
         if each.getSpeedFactor(vehicle) != speed_factor:  # last: other changes may draw it anew

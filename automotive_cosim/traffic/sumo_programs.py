@@ -15,7 +15,7 @@ from pathlib import Path
 from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.traffic.confinement import confined
 
-INSTALL = install_hint("import")
+INSTALL = install_hint("maps")
 
 
 def home() -> Path:

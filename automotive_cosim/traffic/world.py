@@ -106,24 +106,20 @@ class World:
         """Vehicles with their blue lights on."""
         self._not_like_cars: set[str] = set()
         self._wants: dict[str, DesiredSpeed] = {}
+        self._stopping: dict[str, float] = {}
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
         self._sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
         self._sumo.type.setVehicleClass(SEARCHING_TYPE, "passenger")
         self._sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
         self._sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
-        # the recorded traces of scenarios with a scenario.toml have what calls to distributions made of them
-        drawn = self._configuration.distributions if scenario.as_stated else None
+        drawn = self._configuration.distributions
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE), drawn)
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
         variable = variable_edges(self._sumo, self.network)
-        # in recorded traces of scenarios with a scenario.toml, all count against the limit, also what was driven
-        # under a limit of ours that has ended
-        changing = self.network.edges.keys() if scenario.as_stated else variable
         self.congestion = Congestion(
             self.network,
-            lambda: self._sumo.on_lanes(self._not_like_cars, self._wants),
-            changing,
-            self._free() if scenario.as_stated else None,
+            lambda: self._sumo.on_lanes(self._not_like_cars, self._wants, self._stopping),
+            self._free(),
         )
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
         self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO, variable), scenario)
@@ -311,8 +307,9 @@ class World:
             elif sumo.has_device(vehicle, BLUE_LIGHT):
                 self._emergency.add(vehicle)
             if vehicle != EGO:
-                if self._scenario.as_stated:
-                    self._wants[vehicle] = self._surface.wanted(vehicle)
+                self._wants[vehicle] = self._surface.wanted(vehicle)
+                if sumo.vehicle.getStops(vehicle, 1):
+                    self._stopping[vehicle] = 0.0
                 self._surface.departed(vehicle)
                 self._check_route(vehicle)
         if self.detours.are_needed:
@@ -321,6 +318,7 @@ class World:
         for vehicle in arrived:
             self._surface.arrived(vehicle)
             self._wants.pop(vehicle, None)
+            self._stopping.pop(vehicle, None)
         now_s = sumo.time()
         has_changed = now_s >= self._forecast.until_s
         if has_changed:
@@ -398,11 +396,9 @@ class World:
                     f"that cars may use{_similar(edge_id, self.network.edges)}"
                 )
         edges: list[str] = [trip.from_edge]
-        # in recorded traces of scenarios with a scenario.toml, a random number is drawn for each search
-        kind = SEARCHING_TYPE if self._scenario.as_stated else "DEFAULT_VEHTYPE"
         for origin, goal in pairwise(stops):
             try:
-                found, why = self._sumo.find_route(origin, goal, kind).edges, ""
+                found, why = self._sumo.find_route(origin, goal, SEARCHING_TYPE).edges, ""
             except self._sumo.refusals as error:  # no car may set out there now
                 found, why = (), f" ({error})"
             if not found:

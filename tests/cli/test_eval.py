@@ -110,7 +110,7 @@ def test_without_ray_the_command_that_installs_it_is_named(cli, monkeypatch, tmp
     ran = cli("eval", "--agents", "oracle", *GRID, "--executor", "ray")
     assert (ran.code, ran.err) == (
         2,
-        f"error: the ray package is missing; install it with `{install_hint('ray')}`\n",
+        f"error: the ray package is missing; install it with `{install_hint('cluster')}`\n",
     )
     assert not list(tmp_path.iterdir())
 

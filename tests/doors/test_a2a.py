@@ -18,7 +18,7 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("a2a", reason="the extra a2a is not installed")
+pytest.importorskip("a2a", reason="the extra doors is not installed")
 import httpx
 import uvicorn
 from a2a.client import ClientConfig, ClientFactory
@@ -172,7 +172,7 @@ def test_an_assessment_is_counted_before_it_is_unfolded(monkeypatch: Any) -> Non
     def unfolds(plan: Plan) -> Any:
         raise AssertionError("it was unfolded")
 
-    for name in ("jobs", "_episodes", "_drives"):
+    for name in ("jobs", "_unfolded"):
         monkeypatch.setattr(Plan, name, unfolds)
     began_s = time.process_time()
     for config in ({"seeds": SEEDS}, {"seeds": SEEDS[:90], "repeats": 1000}, {"tasks": ["*"], "seeds": SEEDS}):

@@ -11,12 +11,12 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("mcp", reason="the extra mcp is not installed")
+pytest.importorskip("mcp", reason="the extra doors is not installed")
 import anyio
 import uvicorn
 
 from automotive_cosim.doors import guard
-from automotive_cosim.doors.guard import Guarded, Punctual, SameSite
+from automotive_cosim.doors.guard import Guarded, Punctual
 from automotive_cosim.service.own_names import is_own, own_names
 from tests.laws import over
 
@@ -101,12 +101,6 @@ def ended(line: socket.socket) -> bool:
         return line.recv(65536) == b""
     except ConnectionResetError:
         return True
-
-
-@over([(None, 200), (f"http://{OWN}", 200), (f"https://{OWN}", 200), ("http://evil.example", 403), ("null", 403)])
-def test_a_door_without_names_of_its_own_answers_no_other_site(origin, code):
-    given = {} if origin is None else {"origin": origin}
-    assert status({"host": OWN} | given, app=SameSite(reached)) == code
 
 
 def test_the_token_is_taken_from_the_address_or_the_header() -> None:

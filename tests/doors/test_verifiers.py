@@ -11,7 +11,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.tasking.verdict import PARTS
 
-pytest.importorskip("verifiers", reason="the extra verifiers is not installed")
+pytest.importorskip("verifiers", reason="the extra harnesses is not installed")
 import verifiers.v1 as vf
 from mcp import Client
 

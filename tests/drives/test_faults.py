@@ -6,6 +6,7 @@ import pytest
 
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import became, faults, key_of, was
+from automotive_cosim.drives.followed import followed, told
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Judgement, Worth
 from automotive_cosim.drives.score import score
 
@@ -86,3 +87,55 @@ def test_a_word_beside_a_bar_is_left_out_where_another_bar_of_its_kind_is_in_the
     near = missed(500.0, 530.0)
     assert not _is_free(last, False, (before, near, last), 600.0)
     assert _is_free(before, True, (before, near, last), 600.0)
+
+
+KINDS_OF_ANSWERS = [
+    ("alert speed", "driver slows to 50 km/h, 1.2 s after the alert", "obeyed", 1.2),
+    ("alert vehicle, critical", "driver looks for a place to stop, 1.2 s after the alert", "obeyed", 1.2),
+    ("SlowDown", "driver slows to 50 km/h, 1.2 s after the request", "obeyed", 1.2),
+    ("alert vehicle", "driver takes note of the vehicle alert, 1.2 s after the alert", "heard", 1.2),
+    ("alert yield", "driver cannot give way: no kerb, 1.2 s after the alert", "heard", 1.2),
+    ("alert speed", "driver hears the speed alert but does not react", "ignored", 1.2),
+    ("SlowDown", "driver hears the request but does not react", "ignored", 1.2),
+    ("alert speed", "driver hears the belt alert but does not react", "unanswered", None),
+    ("alert speed", "driver slows to 50 km/h, 9.0 s after the alert", "unanswered", None),
+    ("alert speed", "driver drives as before; what was advised has ended", "unanswered", None),
+    ("wipers are ON", "driver slows to 50 km/h, 1.2 s after the alert", "", None),
+]
+
+
+@pytest.mark.parametrize(("words", "answer", "kind", "after_s"), KINDS_OF_ANSWERS)
+@pytest.mark.parametrize("worth", Worth)
+def test_an_act_in_time_whose_driver_goes_on_speeding_is_told_so(
+    words: str, answer: str, kind: str, after_s: float | None, worth: Worth
+) -> None:
+    seconds = [float(second) for second in range(200)]
+    timeline = {
+        "time_s": seconds,
+        "speed_kmh": [81.0 if second < 86 else 49.0 for second in seconds],
+        "limit_kmh": [50.0] * 200,
+        "driver": [[11.2, answer]],
+    }
+    act = JudgedAct(10.0, words, worth)
+    (came,) = followed([act], timeline)
+    assert (came.answer, came.answered_s) == (kind, after_s)
+    assert (came.before_kmh, came.after_kmh, came.over_s) == (81.0, 81.0, 75.0)
+    (line,) = told([act], [], timeline)
+    assert line.startswith(str(worth))
+    assert ("75 s above the limit" in line) is bool(kind)
+    assert told([act], [], {}) == [was(act, [])]
+
+
+def test_each_of_several_acts_gets_its_own_answer() -> None:
+    acts = [JudgedAct(10.0 * number, "alert speed", Worth.RIGHT) for number in range(1, 5)]
+    answers = [
+        [11.5, "driver hears the speed alert but does not react"],
+        [22.0, "driver holds, 2.0 s after the alert"],
+        [22.0, "driver keeps 2 s behind, 2.0 s after the alert"],
+        [41.0, "driver hears the speed alert but does not react"],
+    ]
+    empty = [0.0] * 60
+    timeline = {"time_s": list(range(60)), "speed_kmh": empty, "limit_kmh": [None] * 60, "driver": answers}
+    came = followed(acts, timeline)
+    assert [each.answer for each in came] == ["ignored", "obeyed", "unanswered", "ignored"]
+    assert came[1].did == "holds; keeps 2 s behind"

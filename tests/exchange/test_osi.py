@@ -12,8 +12,8 @@ from automotive_cosim.exchange.osi import trace_name, write_osi
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.run.road import RoadRecord, Second
 
-osi_utilities = pytest.importorskip("osi_utilities", reason="the extra osi is not installed")
-pytest.importorskip("osi3", reason="the extra osi is not installed")
+osi_utilities = pytest.importorskip("osi_utilities", reason="the extra safety is not installed")
+pytest.importorskip("osi3", reason="the extra safety is not installed")
 
 RADIUS_M, TURN_DEG = 100.0, 6.0
 RAIN = Weather(12.0, 60.0, 4.0, 61, 100.0, 800.0, 5.0)

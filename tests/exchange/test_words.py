@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from copy import deepcopy
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -12,7 +11,7 @@ import pytest
 import sumolib
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.exchange.catalogs import Catalogs
+from automotive_cosim.exchange.catalogs import Catalogs, _copied
 from automotive_cosim.exchange.incoming import import_openscenario, road_network, scenario_text
 from automotive_cosim.exchange.places import RoadPlaces
 from automotive_cosim.exchange.storyboard import read_story
@@ -171,8 +170,21 @@ SIZES = "".join(f'<ParameterAssignment parameterRef="{name}" value="{value}"/>' 
                 (("size", 2), ("long", 6)))  # fmt: skip
 OTHER_CAR = f"""<CatalogReference catalogName="Vehicle" entryName="long"><ParameterAssignments>{SIZES}
 </ParameterAssignments></CatalogReference>"""
+BOUNDS = """<BoundingBox><Center x="1" y="0" z="0"/><Dimensions width="2" length="4" height="1"/></BoundingBox>"""
+TRAILER = """<Trailer><Trailer name="t"><Vehicle name="t" vehicleCategory="trailer">{}<TrailerCoupler dx="3.5"/>
+{}</Vehicle></Trailer></Trailer>"""
+LAST = (
+    '<TrailerHitch dx="-1.5"/><Trailer><Trailer name="l"><CatalogReference catalogName="Vehicle" entryName="last"/>'
+)
+TOWING = re.sub(
+    "(?s)<Trailer>.*</Trailer>",
+    f'<TrailerHitch dx="-1"/>{TRAILER.format(BOUNDS, f"{LAST}</Trailer></Trailer>")}',
+    VEHICLE.format("v"),
+)
+"""A car with two trailers: 3.65 m before its reference point and 10.5 m behind it."""
 CARS = "".join(
-    f'<ScenarioObject name="{name}">{OTHER_CAR if name == "other" else VEHICLE.format("v")}</ScenarioObject>'
+    f'<ScenarioObject name="{name}">{special.get(name, VEHICLE.format("v"))}</ScenarioObject>'
+    for special in ({"other": OTHER_CAR, "eighth": TOWING},)
     for name in PLACES
     if name != "box"
 )
@@ -218,7 +230,8 @@ WEATHER = '<Environment name="fog"><Weather><Fog visualRange="99"/></Weather></E
 CATALOGS = {
     "Vehicle": VEHICLE.format("long").replace('length="4.5"', 'length="$long"').replace(
         "</ParameterDeclarations>", '<ParameterDeclaration name="long" parameterType="double" value="5"/>'
-        "</ParameterDeclarations>"),
+        "</ParameterDeclarations>")
+        + f'<Vehicle name="last" vehicleCategory="semitrailer">{BOUNDS}<TrailerCoupler dx="4"/></Vehicle>',
     "Environment": WEATHER,
     "Route": ROUTE.format("there"),
     "Maneuver": MANEUVER.format("kept", event("last", do(SPEED.format("step", "time", 0, DELTA)),
@@ -231,6 +244,11 @@ class WordsSample(NamedTuple):
 
     file: Path
     places: RoadPlaces
+
+    def tree(self):
+        """The whole file."""
+        self.file.write_text(FILE, "utf-8")
+        return read_tree(self.file)
 
     def text(self, root=None):
         """The scenario that it becomes, or that a changed tree of it does."""
@@ -277,31 +295,101 @@ def test_every_word_of_the_table_is_refused_or_has_a_stated_difference_or_is_car
                 assert table()[name].word == CARRIED, f"{name} is carried out in {tag} and refused everywhere"
 
 
+def ways(homes):
+    """To each element of the schemas the one that it is put into: through what is read, if that leads there."""
+    found = dict.fromkeys(homes, "")
+    for through in (CARRIED, DIFFERENT), (CARRIED, DIFFERENT, REFUSED):
+        reached = list(found)
+        for tag in reached:
+            for part, word in table()[tag].parts.items() if tag in table() else ():
+                if part not in found and word in through:
+                    found[part] = tag
+                    reached.append(part)
+    return found
+
+
+class Grafted(NamedTuple):
+    """A file with an element that the sample may not have, within those that can have it."""
+
+    root: XmlElement
+    element: XmlElement
+    refused: str
+    """How the first that is refused around it is told; empty if none is."""
+    is_read: bool
+    """Whether the import looks into it."""
+
+
+def grafted(root, tag, way):
+    around = [tag]
+    while way[around[0]]:
+        around.insert(0, way[around[0]])
+    made = _copied(root)
+    element = next(each for each in walk(made) if each.tag == around[0])
+    refused, is_read = "", True
+    for above, part in pairwise(around):
+        if is_read and table()[above].parts[part] == REFUSED:
+            refused, is_read = f"line {element.line}: <{part}> in <{above}>: outside", False
+        is_read &= part not in table() or table()[part].word == CARRIED
+        element.parts.append(XmlElement(part, {}, element.line, element.path))
+        element = element.parts[-1]
+    return Grafted(made, element, refused, is_read)
+
+
+@pytest.mark.slow
 def test_what_the_table_refuses_is_refused_by_name_and_line(sample):
-    root = read_tree(sample.file)
-    homes = dict.fromkeys(each.tag for each in walk(root))
-    tried = 0
-    for tag in homes:
-        for name, word, _ in table()[tag].told() if tag in table() else ():
-            if word != REFUSED:
-                continue
-            tried += 1
-            changed = deepcopy(root)
-            place = next(each for each in walk(changed) if each.tag == tag)
-            if name.startswith("@"):
-                place.attributes = {**place.attributes, name[1:]: "1"}
-                told = rf"all\.xosc line {place.line}: <{tag}> has {name[1:]} = '1': outside"
-            else:
-                place.parts.append(XmlElement(name, {}, place.line, place.path))
-                told = rf"all\.xosc line {place.line}: <{name}> in <{tag}>: outside"
-            with pytest.raises(ScenarioError, match=told):
-                Catalogs(changed).complete(changed, {})
-    assert tried > 50
-    parents = {part for row in table().values() for part, word in row.parts.items() if word == REFUSED}
+    root = sample.tree()
+    way, tried, missing = ways(dict.fromkeys(each.tag for each in walk(root))), 0, []
     for tag, row in table().items():
-        if row.word == REFUSED:
-            inside = {above for above, other in table().items() if tag in other.parts}
-            assert tag in parents or all(table()[each].word != CARRIED for each in inside), tag
+        if tag not in way:
+            missing.append(tag)
+            continue
+        refused = grafted(root, tag, way).refused
+        for name, word, _ in row.told():
+            file = grafted(root, tag, way)
+            if name.startswith("@"):
+                told = refused or f"line {file.element.line}: <{tag}> has {name[1:]} = '1': outside"
+                file.element.attributes = {**file.element.attributes, name[1:]: "1"}
+            else:
+                told = refused or f"line {file.element.line}: <{name}> in <{tag}>: outside"
+                file.element.parts.append(XmlElement(name, {}, file.element.line, file.element.path))
+            if refused or (word == REFUSED and file.is_read):
+                tried += 1
+                with pytest.raises(ScenarioError, match=re.escape(f"all.xosc {told}")):
+                    Catalogs(file.root).complete(file.root, {})
+            else:
+                assert word != REFUSED, f"{tag}: {name} is refused where nothing looks"
+    assert set(missing) <= {"OpenScenario"}
+    assert tried > 400
+
+
+NEEDS_A_VALUE = {"coordinateSystem": "lane", "dsLane": "20", "model3d": "x"}
+
+
+@pytest.mark.slow
+def test_what_has_a_stated_difference_is_imported(sample):
+    """With each that the sample has not, what it becomes differs at most where the difference is stated."""
+    root = sample.tree()
+    right = sample.text(root)
+    way = ways(dict.fromkeys(each.tag for each in walk(root)))
+    given = {(each.tag, name) for each in walk(root) for name in each.attributes}
+    given |= {(each.tag, part.tag) for each in walk(root) for part in each.parts}
+    tried = 0
+    for tag in set(way) & set(table()):
+        for name, word, difference in table()[tag].told():
+            file = grafted(root, tag, way)
+            if word != DIFFERENT or file.refused or (tag, name.lstrip("@")) in given:
+                continue
+            if name.startswith("@"):
+                value = NEEDS_A_VALUE.get(name[1:], "0")
+                file.element.attributes = {**file.element.attributes, name[1:]: value}
+            else:
+                file.element.parts.append(XmlElement(name, {}, file.element.line, file.element.path))
+            tried += 1
+            if file.is_read:
+                assert sample.text(file.root) == right, f"{tag}: {name} ({difference})"
+            else:
+                Catalogs(file.root).complete(file.root, {})
+    assert tried > 100
 
 
 OTHER = {"true": "false", "false": "true", "greaterThan": "lessThan", "lessThan": "greaterThan", "any": "all"}
@@ -314,8 +402,9 @@ def other(value):
         return OTHER.get(value, f"{value}1")
 
 
+@pytest.mark.slow
 def test_what_is_carried_out_changes_the_scenario(sample):
-    root = read_tree(sample.file)
+    root = sample.tree()
     right = sample.text(root)
     left = {
         (tag, name)
@@ -328,7 +417,7 @@ def test_what_is_carried_out_changes_the_scenario(sample):
         for name, value in element.attributes.items():
             if (element.tag, f"@{name}") not in left:
                 continue
-            changed = deepcopy(root)
+            changed = _copied(root)
             place = list(walk(changed))[number]
             place.attributes = {**place.attributes, name: other(value)}
             try:
@@ -408,6 +497,36 @@ def test_a_road_that_keeps_left_is_driven(tmp_path, simulations: Simulations):
         traffic.close()
     assert ego.x_m > 600 + FRONT_M
     assert ego.y_m == pytest.approx(1.75, abs=0.2)
+
+
+def test_trailers_make_a_vehicle_longer_in_it_or_as_entities(sample):
+    """The reference points hang 1 + 3.5 m and 1.5 + 4 m behind each other; the last one ends 1 m behind its own."""
+    length_m = FRONT_M + 4.5 + 5.5 + 1.0
+    sample.file.write_text(FILE, "utf-8")
+    assert f"length_m = {length_m}" in sample.text()
+    car = VEHICLE.format("v")
+    alone = TRAILER.format(BOUNDS, "")
+    (trailer,) = re.findall("(?s)<Vehicle.*</Vehicle>", alone)
+    towing = re.sub(
+        "(?s)<Trailer>.*</Trailer>", '<TrailerHitch dx="-1"/><Trailer><TrailerRef entityRef="x"/></Trailer>', car
+    )
+    story = f"""<PrivateAction><TeleportAction>{AHEAD}</TeleportAction></PrivateAction>"""
+    file = (
+        FILE.replace(TOWING, towing)
+        .replace("</Entities>", f'<ScenarioObject name="x">{trailer}</ScenarioObject></Entities>')
+        .replace("</Actions></Init>", f'<Private entityRef="x">{story}</Private></Actions></Init>')
+    )
+    sample.file.write_text(file, "utf-8")
+    assert f"length_m = {FRONT_M + 4.5 + 1.0}" in sample.text()
+    for before, after, told in (
+        ('entityRef="x"/></Trailer>', 'entityRef=""/></Trailer>', "named x is a trailer that nothing pulls"),
+        ('entityRef="x"/></Trailer>', 'entityRef="y"/></Trailer>', "<Trailer> names 'y', which is no entity"),
+        ('<TrailerHitch dx="-1"/>', "", "<Vehicle> has no TrailerHitch"),
+    ):
+        assert before in file
+        sample.file.write_text(file.replace(before, after), "utf-8")
+        with pytest.raises(ScenarioError, match=told):
+            sample.text()
 
 
 def test_what_an_act_does_ends_with_its_stop(sample):

@@ -301,6 +301,25 @@ def test_a_folder_appears_whole_or_not_at_all(tmp_path):
     assert [each.name for each in tmp_path.iterdir()] == ["out"]
 
 
+@pytest.mark.parametrize("name", [".", "new", "new/a/b", "../.out.lock"])
+def test_an_error_names_the_folder_that_was_asked_for_and_not_where_it_is_made(tmp_path, name):
+    out = tmp_path / "out"
+    asked = out / name.removeprefix("new/") if name.startswith("new/") else out
+
+    def fails(error):
+        with appearing(out) as folder:
+            raise error(folder)
+
+    with pytest.raises(OSError, match="full") as caught:
+        fails(lambda folder: OSError(errno.ENOSPC, "full", os.path.normpath(folder.parent / name)))
+    assert caught.value.filename == str(asked)
+    with pytest.raises(UserError, match=re.escape(f"{out}/a line 3")):
+        fails(lambda folder: UserError(f"{folder}/a line 3: no"))
+    with pytest.raises(OSError, match="full") as other:
+        fails(lambda _: OSError(errno.ENOSPC, "full", "elsewhere"))
+    assert other.value.filename == "elsewhere"
+
+
 def test_what_a_killed_program_has_left_of_a_folder_is_removed_by_the_next_and_two_do_not_make_it_at_once(tmp_path):
     out, kept = tmp_path / "out", tmp_path / f".other-{16 * '0'}"
     kept.mkdir()

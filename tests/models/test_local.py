@@ -132,7 +132,7 @@ def test_what_is_missing_is_named_with_the_command_that_installs_it(tmp_path, mo
         make_agent("t3a", "local")
     (tmp_path / "small.gguf").write_bytes(b"GGUF")
     monkeypatch.setattr(local, "find_spec", lambda name: None)
-    with pytest.raises(SetupError, match=re.escape(install_hint("local"))):
+    with pytest.raises(SetupError, match=re.escape(install_hint("models"))):
         make_model(f"local/{tmp_path}/small.gguf")
 
 

@@ -199,7 +199,7 @@ def test_a_missing_file_and_a_folder_are_refused(tmp_path: Path) -> None:
 
 def test_without_osmium_the_mend_is_named(formats: dict[str, Path], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "osmium", None)
-    with pytest.raises(SetupError, match=re.escape(install_hint("import"))):
+    with pytest.raises(SetupError, match=re.escape(install_hint("maps"))):
         extract.read(formats[""])
 
 

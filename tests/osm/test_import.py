@@ -330,7 +330,7 @@ def test_without_eclipse_sumo_the_mend_is_named(
         raise sumo_programs.PackageNotFoundError(name)
 
     monkeypatch.setattr(sumo_programs, "distribution", missing)
-    with pytest.raises(SetupError, match=re.escape(install_hint("import"))):
+    with pytest.raises(SetupError, match=re.escape(install_hint("maps"))):
         import_map(formats[""], tmp_path / "out")
     assert not list(tmp_path.iterdir())
 

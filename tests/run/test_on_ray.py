@@ -23,7 +23,7 @@ from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import read_rows, stamp
 
-pytest.importorskip("ray", reason="the extra `ray` is not installed")
+pytest.importorskip("ray", reason="the extra `cluster` is not installed")
 on_ray = pytest.importorskip("automotive_cosim.run.on_ray")  # before Ray, whose environment it sets
 OnRay = on_ray.OnRay
 

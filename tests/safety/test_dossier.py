@@ -138,7 +138,7 @@ def test_a_search_counts_the_kinds_of_its_space_alone(tmp_path: Path) -> None:
     )
     assert [len(each) for each in (other.failed, other.failed_beside, other.passed)] == [0, 2, 6]
     assert [len(each) for each in (same.failed, same.failed_beside, same.passed)] == [2, 0, 4]
-    assert "of these kinds alone: over limit. Of the others, 2 failed in what" in dossier(other).sentence
+    assert "nuisances than right acts, of: over limit. Of the others, 2 failed in what" in dossier(other).sentence
     tables = {table.name: table for section in dossier(other).sections for table in section.tables}
     assert [row[0] for row in tables["events"].rows] == ["over_limit"]
     assert {row[0] for row in tables["events_beside"].rows} == {"tunnel", "blue_light"}

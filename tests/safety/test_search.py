@@ -129,6 +129,26 @@ def test_what_fails_only_once_is_no_failure() -> None:
     assert len(found.unsteady) == 3
 
 
+@pytest.mark.parametrize("odd", [0, 1])
+def test_neither_a_minimal_failure_nor_what_is_beside_it_is_chance(odd: int) -> None:
+    """Between 100 and 400 m, every second point fails at first and never again, the others the other way round."""
+
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        seen_m = float(point["visibility_m"])
+        is_chance = 100 < seen_m < 400
+        fails = (round(seen_m) % 2 == odd) == (repeat == 0) if is_chance else seen_m <= 100
+        return TriedOutcome(-0.5 if fails else 0.5, fails, "late", "t")
+
+    found = hunt(SPACE, evaluate, make_sampler("climb", SPACE, 64, 1), 64)
+    assert found.minimal
+    for each in found.minimal:
+        assert each.neighbour is not None
+        assert each.neighbour_passes
+        for repeat in range(REPEATS):
+            assert evaluate(each.point, repeat).failed
+            assert evaluate(each.neighbour, repeat).passed
+
+
 def test_a_nominal_point_that_fails_is_refused() -> None:
     with pytest.raises(
         NominalFailureError, match=r"the nominal point fails \(late\); give nominal values"
@@ -216,6 +236,8 @@ def test_an_interrupted_search_keeps_what_it_has() -> None:
         ((EventOutcome.MISSED, EventOutcome.AVOIDED), (), FailureRule(events=("tunnel",)), -0.5),
         ((EventOutcome.MISSED,), (), FailureRule(events=("belt",)), None),
         ((EventOutcome.HIT, EventOutcome.VOID), (), FailureRule(), 0.5),
+        ((EventOutcome.HIT,), (Worth.RIGHT, Worth.FALSE), FailureRule(events=("tunnel",)), 0.5),
+        ((EventOutcome.HIT,), (Worth.RIGHT, Worth.FALSE, Worth.WRONG), FailureRule(events=("tunnel",)), -0.666667),
     ],
 )
 def test_a_drive_with_nothing_due_has_no_margin(

@@ -92,10 +92,6 @@ class Layout:
         """Its speed without traffic."""
         return self.network.edges[edge_id].speed_mps
 
-    def across(self, edge_id: str) -> float:
-        """There are no junctions."""
-        return 1.0
-
     def slow_edges(self) -> tuple[tuple[str, float], ...]:
         """Stretches where the traffic is slow."""
         shares = ((f"stretch{index}", stretch.relative_speed) for index, stretch in enumerate(self.stretches))

@@ -228,6 +228,7 @@ def without_room(disturbed: Disturbed, expected: tuple[int, Any], place: Path) -
     assert codes[1] in (2, 3), errs[1]
     assert is_one_line(errs[1]), errs[1]
     assert "No space left" in errs[1]
+    assert not any(re.search(r"/\.\w", each) for each in errs[:2]), "a hidden name says nothing to the user"
     assert (codes[2], disturbed.command.result(kept / disturbed.command.name)) == expected, errs[2]
 
 

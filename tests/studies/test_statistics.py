@@ -288,6 +288,21 @@ def test_a_policy_that_rerouted_nowhere_is_not_the_best() -> None:
     assert answer(alone) == "“delay:600” rerouted nowhere."
 
 
+def test_the_answer_names_a_policy_to_follow_at_every_share_of_rerouting_cars() -> None:
+    """``best`` knows the futures; a share at which a policy costs time is in the sentence too."""
+    rows = [
+        replace(each, share=share)
+        for share, gain_s in ((0.0, -10.8), (0.5, 10.1))
+        for each in seeds(30, parted(gain_s, 20.0, 90.0))
+    ]
+    found = study(rows)
+    plan = replace(found.plan, policies=("never", "always", "best"), shares=(0.0, 0.5))
+    assert answer(replace(found, plan=plan)).startswith(
+        "Rerouting by “always” costs 11 s (11 to 11) a decision with 0% of the other cars rerouting and saves "
+        "10 s (10 to 10) a decision with 50% of the other cars rerouting, over 60 decisions of 30 seeds"
+    )
+
+
 def test_a_route_leaves_out_what_is_ahead_and_not_what_is_behind() -> None:
     route = ("a", "b", "c", "d", "goal")
     assert left_out(route, ("a", "x", "d", "goal"), ("c", "d", "goal")) == ["c"]

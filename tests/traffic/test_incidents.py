@@ -316,6 +316,35 @@ def test_the_leader_cuts_out_before_a_standing_car(staged: Staged, average: EgoP
 
 
 @pytest.mark.sumo
+@pytest.mark.parametrize(
+    "kind",
+    ['"braking_leader"\nat_m = 100.0\ndeceleration_mps2 = 7.0\nkeeps_lane = true', '"cut_out"\nfrom_s = 30.0'],
+)
+def test_after_a_manoeuvre_the_driver_ahead_is_who_they_were(
+    staged: Staged, average: EgoPlan, in_sumo: Callable[[Scenario, EgoPlan], InProcessTraffic], kind: str
+) -> None:
+    drive = in_sumo(staged(f"kind = {kind}"), average)
+    import libsumo
+
+    of = libsumo.vehicle
+    ways = of.getLaneChangeMode, of.getSpeedMode, of.getDecel, of.getSpeedFactor
+
+    def manners() -> dict[str, tuple[float, ...]]:
+        others = (each for each in of.getIDList() if not each.startswith(("ego", "automotive_cosim.breakdown")))
+        return {each: tuple(way(each) for way in ways) for each in others}
+
+    before: dict[str, tuple[float, ...]] = {}
+    touched: set[str] = set()
+    for _ in range(90):
+        drive.advance(1.0)
+        now = manners()
+        before = now | before
+        touched |= {each for each in now if now[each] != before[each]}
+    assert touched
+    assert now == {each: before[each] for each in now}
+
+
+@pytest.mark.sumo
 def test_an_ambulance_comes_from_behind(staged: Staged, average: EgoPlan) -> None:
     ambulance = staged('kind = "emergency"\nat_m = 300.0\nbehind_m = 200.0', empty=True)
     drive = driven(ambulance, replace(average, driver="calm"))

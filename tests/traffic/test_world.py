@@ -467,7 +467,7 @@ def test_congestion_goes_by_vehicles_and_not_by_lanes(in_process: InProcess, hur
     for _ in range(12):
         traffic.advance(5.0)
         found: dict[str, list[float]] = {}
-        for lane_id, speed_mps, _ in load_library().on_lanes():
+        for lane_id, speed_mps, _ in load_library().on_lanes((), {}, {}):
             found.setdefault(lane_id.rpartition("_")[0], []).append(speed_mps)
         for edge_id in libsumo.edge.getIDList():
             own = [libsumo.vehicle.getSpeed(vehicle) for vehicle in libsumo.edge.getLastStepVehicleIDs(edge_id)]

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage
+from automotive_cosim.cockpit.cards import SMALL, content, heading, slider, switch
+from automotive_cosim.cockpit.flow import Block, at, card, fill, grid, line, panels, stack
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
-from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, panes, row
+from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat, seated
-from automotive_cosim.cockpit.parts import content, heading, slider, switch, temperature
 from automotive_cosim.cockpit.signals import HMI, HVAC, SEAT
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
+from automotive_cosim.cockpit.values import temperature
+from automotive_cosim.cockpit.widgets import Glyph, Label, Widget
 from automotive_cosim.contracts.text import say
 
 PLAN_WIDTH = 736
@@ -37,117 +38,76 @@ AHEAD_MIN = (10, int(MINUTES), 30)
 
 def cabin(state: State) -> tuple[Widget, ...]:
     """The seats from above on the left, the forecast and the switches on the right."""
-    plan, right = panes(content(state), PLAN_WIDTH, REST)
-    forecast, _, switches = column(right, 308, GAP, REST)
-    return _plan(plan, state), _forecast(forecast, state), _for_them(switches, state)
+    tiles = grid(2, 12, switch(SEAT.BELT_REMINDER, state), switch(SEAT.PASSENGER_AIRBAG, state))
+    for_them = card((REST, grid(1, 10, tiles, slider(HMI.REAR_SCREEN, state))), padding=(20, 14))
+    right = stack((308, _forecast(state)), GAP, (REST, for_them))
+    return fill(content(state), panels((PLAN_WIDTH, _plan(state)), right))
 
 
-def _plan(rect: Rect, state: State) -> Widget:
+def _plan(state: State) -> Block:
     """The front seats above, the rear bench below, as seen by who sits in them."""
-    head, _, seats = column(rect.inset(20, 16), 30, 6, REST)
-    front, rear = seats.rows(2, 12)
-    cells = (*front.columns(2, 12), *rear.columns(3, 12))
     aboard = {one.seat: one for one in seated(state.signals)}
-    tiles = (_seat(cell, seat, aboard.get(seat)) for cell, seat in zip(cells, SEATS, strict=True))
-    return Card(rect=rect, children=(heading(head, say("Who is aboard")), *tiles))
+    front, rear = (
+        [_seat(seat, aboard.get(seat)) for seat in line] for line in (tuple(SEATS)[:2], tuple(SEATS)[2:])
+    )
+    seats = grid(1, 12, grid(2, 12, *front), grid(3, 12, *rear))
+    return card((30, heading(say("Who is aboard"))), 6, (REST, seats), padding=SMALL)
 
 
-def _seat(rect: Rect, seat: Seat, one: Occupant | None) -> Widget:
-    head, _, what, _, facts = column(rect.inset(18, 14), 30, 4, 44, 10, REST)
-    title, picture = row(head, REST, 48)
-    key = f"cabin.{seat}"
-    name = heading(title, SEATS[seat])
+def _seat(seat: Seat, one: Occupant | None) -> Block:
+    key, name = f"cabin.{seat}", heading(SEATS[seat])
     if one is None:
-        empty = Label(rect=what.top(40), key=key, text=say("Empty"), description=SEATS[seat], tone="muted")
-        return Card(rect=rect, look="raised", children=(name, empty))
+        empty = Label(key=key, text=say("Empty"), description=SEATS[seat], tone="muted")
+        return card((30, line(name, 48)), 4, (40, empty), padding=(18, 14), look="raised")
     kind, icon = KINDS[one.kind]
     told = [(f"{key}.weight", f"{one.weight_kg:g} kg")]
     if one.kind is not Kind.OBJECT:
         told.append((f"{key}.awake", say("Asleep") if one.asleep else say("Awake")))
     told.append((f"{key}.belt", say("Buckled") if one.belted else say("Unbuckled")))
-    return Card(
-        rect=rect,
+    picture = Glyph(icon=icon, size=38, tone="accent")
+    return card(
+        (30, line(name, (48, at(lambda box: box.top(40).right_part(40), picture)))),
+        4,
+        (44, Label(key=key, text=kind, description=SEATS[seat], style=Type.TITLE)),
+        10,
+        *((LINE, Label(key=fact, text=text, style=Type.LABEL)) for fact, text in told),
+        padding=(18, 14),
         look="raised",
-        children=(
-            name,
-            Glyph(rect=picture.top(40).right_part(40), icon=icon, size=38, tone="accent"),
-            Label(rect=what, key=key, text=kind, description=SEATS[seat], style=Type.TITLE),
-            *(
-                Label(rect=line, key=fact, text=text, style=Type.LABEL)
-                for line, (fact, text) in zip(column(facts, *(len(told) * [LINE])), told, strict=True)
-            ),
-        ),
     )
 
 
-def _forecast(rect: Rect, state: State) -> Widget:
+def _forecast(state: State) -> Block:
     """How warm the air will be once the driver has left, with the climate control off and on."""
-    head, _, table, _, keep = column(rect.inset(20, 16), 30, 10, 160, REST, 60)
-    lines = table.rows(4, 0)
-    children: list[Widget] = [
-        heading(head, say("Cabin after you leave")),
-        *(
-            Label(rect=cell, text=text, style=Type.LABEL, tone="muted", align="right")
-            for cell, text in zip(_columns(lines[0])[1:], (say("Climate off"), say("Climate on")), strict=True)
-        ),
-    ]
-    for line, minutes in zip(lines[1:], AHEAD_MIN, strict=True):
-        name, *values = _columns(line)
-        children.append(
-            Label(rect=name, text=say("In {minutes} min", minutes=minutes), style=Type.LABEL, tone="muted")
+
+    def warmth(minutes: int, climate: bool) -> Label:
+        told = (
+            say("Climate on, in {minutes} min", minutes=minutes)
+            if climate
+            else say("Climate off, in {minutes} min", minutes=minutes)
         )
-        for cell, climate in zip(values, (False, True), strict=True):
-            children.append(
-                Label(
-                    rect=cell,
-                    key=f"cabin.forecast.{'on' if climate else 'off'}.{minutes}",
-                    text=temperature(state.signals, cabin_c(state.vehicle, minutes, climate=climate), 0),
-                    description=say("Climate on, in {minutes} min", minutes=minutes)
-                    if climate
-                    else say("Climate off, in {minutes} min", minutes=minutes),
-                    style=Type.STRONG,
-                    align="right",
-                )
-            )
-    kept = switch(keep, "cabin.keep_climate", say("Keep climate on"), Icon.CLIMATE, HVAC.KEPT, state.signals)
-    return Card(rect=rect, children=(*children, kept))
+        return Label(
+            key=f"cabin.forecast.{'on' if climate else 'off'}.{minutes}",
+            text=temperature(state.signals, cabin_c(state.vehicle, minutes, climate=climate), 0),
+            description=told,
+            style=Type.STRONG,
+            align="right",
+        )
 
-
-def _columns(line: Rect) -> tuple[Rect, Rect, Rect]:
-    """Name, climate off, climate on."""
-    name, values = row(line, 130, REST)
-    off, on = values.columns(2, 12)
-    return name, off, on
-
-
-def _for_them(rect: Rect, state: State) -> Widget:
-    inner, signals = rect.inset(20, 14), state.signals
-    upper, lower = inner.rows(2, 10)
-    reminder, airbag = upper.columns(2, 12)
-    return Card(
-        rect=rect,
-        children=(
-            switch(
-                reminder,
-                "cabin.belt_reminder",
-                say("Belt chime"),
-                Icon.SEAT_BELT,
-                SEAT.BELT_REMINDER,
-                state.signals,
-            ),
-            switch(
-                airbag,
-                "cabin.passenger_airbag",
-                say("Passenger airbag"),
-                Icon.AIRBAG,
-                SEAT.PASSENGER_AIRBAG,
-                signals,
-                state.vehicle.held(SEAT.PASSENGER_AIRBAG),
-            ),
-            slider(
-                lower, "cabin.rear_screen", say("Rear screen, brightness"), Icon.SCREEN, HMI.REAR_SCREEN, signals
-            ),
-        ),
+    names = (
+        Label(text=text, style=Type.LABEL, tone="muted", align="right")
+        for text in (say("Climate off"), say("Climate on"))
+    )
+    lines = [line(130, grid(2, 12, *names))]
+    for minutes in AHEAD_MIN:
+        values = grid(2, 12, warmth(minutes, False), warmth(minutes, True))
+        lines.append(line((130, heading(say("In {minutes} min", minutes=minutes))), values))
+    return card(
+        (30, heading(say("Cabin after you leave"))),
+        10,
+        (160, grid(1, 0, *lines)),
+        REST,
+        switch(HVAC.KEPT, state),
+        padding=SMALL,
     )
 
 

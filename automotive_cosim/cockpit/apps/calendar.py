@@ -8,17 +8,17 @@ from typing import Annotated, Any
 import numpy as np
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.cards import back, content, gone, note, picked_at, rows, title
 from automotive_cosim.cockpit.commands import Put, Remove
+from automotive_cosim.cockpit.flow import card, fill, grid
 from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, named, offered, unknown
-from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column
-from automotive_cosim.cockpit.messages import Back, Show
-from automotive_cosim.cockpit.parts import content, gone, note, picked_at, rows, title
+from automotive_cosim.cockpit.layout import REST
+from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Label, Row, Widget
+from automotive_cosim.cockpit.widgets import Button, Label, Row, Widget
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import joined, say
 
@@ -87,98 +87,74 @@ MOVES_MIN = (
 
 def calendar(state: State) -> tuple[Widget, ...]:
     """The day's appointments; each leads to its place."""
-    area = content(state)
-    inner = area.inset(28, 20)
     agenda = state.of(Agenda).entries
     date = say("Today") if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
 
-    def line(index: int, cell: Rect) -> Row:
-        entry = agenda[index]
+    def entry(index: int, each: Appointment) -> Row:
         return Row(
-            rect=cell,
             key=f"calendar.{index}",
             raised=True,
-            text=joined(" ", (entry.at, entry.title)),
-            detail=entry.place,
+            text=joined(" ", (each.at, each.title)),
+            detail=each.place,
             trail=say("Details"),
             icon=Icon.CALENDAR,
-            on_tap=Show("appointment", entry.name),
+            on_tap=Show("appointment", each.name),
         )
 
-    return (
-        Card(
-            rect=area,
-            children=(
-                title(inner.top(40), Icon.CALENDAR, date, "calendar.date"),
-                rows(inner.below(56), "calendar.entries", say("Appointments"), state, len(agenda), line, height=76)
-                if agenda
-                else note(inner.below(56), "calendar.empty", say("Nothing today")),
-            ),
-        ),
-    )
+    every = rows("calendar.entries", say("Appointments"), state, agenda, entry, height=76)
+    listed = every if agenda else note("calendar.empty", say("Nothing today"))
+    head = title(Icon.CALENDAR, date, "calendar.date")
+    return fill(content(state), card(head, 16, (REST, listed), padding=(28, 20)))
 
 
 def appointment(state: State) -> tuple[Widget, ...]:
     """The entry that was tapped."""
-    area = content(state)
-    inner = area.inset(28, 20)
-    head, _, where, _, times, _, acts = column(inner, 40, 40, 56, 64, 72, REST, 72)
     agenda = state.of(Agenda).entries
-    at = picked_at(state, "appointment", [entry.name for entry in agenda])
-    if at is None:
-        return gone(inner, "appointment", say("This appointment is no longer there"))
-    entry = agenda[at]
-
-    def put(others: tuple[Appointment, ...], said: str) -> Put:
-        return Put(Agenda(others), said)
+    index = picked_at(state, "appointment", [each.name for each in agenda])
+    if index is None:
+        return gone(state, "appointment", say("This appointment is no longer there"))
+    entry = agenda[index]
 
     def moved(by_min: int) -> Put:
         hours, minutes = map(int, entry.at.split(":"))
         then = (60 * hours + minutes + by_min) % 1440
         new = replace(entry, at=f"{then // 60:02d}:{then % 60:02d}")
-        return put(
-            (*agenda[:at], new, *agenda[at + 1 :]), say("{title} is at {time}", title=entry.title, time=new.at)
+        return Put(
+            Agenda((*agenda[:index], new, *agenda[index + 1 :])),
+            say("{title} is at {time}", title=entry.title, time=new.at),
         )
 
-    cells = times.columns(len(MOVES_MIN), 12)
-    back, there, remove = acts.columns(3, 16)
-    return (
-        Card(
-            rect=area,
-            children=(
-                title(head, Icon.CALENDAR, joined(" ", (entry.at, entry.title)), "appointment.title"),
-                Label(
-                    rect=where,
-                    key="appointment.place",
-                    text=entry.place or NO_PLACE,
-                    description=say("Place"),
-                    style=Type.HEADLINE,
-                ),
-                *(
-                    Button(rect=cell, key=f"appointment.{key}", text=text, icon=Icon.CLOCK, on_tap=moved(by_min))
-                    for cell, (key, text, by_min) in zip(cells, MOVES_MIN, strict=True)
-                ),
-                Button(rect=back, key="appointment.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
-                Button(
-                    rect=there,
-                    key="appointment.place_there",
-                    text=say("Show on the map"),
-                    icon=Icon.GOAL,
-                    on_tap=Show("place", entry.place),
-                    disabled="" if entry.place else NO_PLACE,
-                ),
-                Button(
-                    rect=remove,
-                    key="appointment.remove",
-                    text=say("Remove"),
-                    icon=Icon.DELETE,
-                    on_tap=Remove(
-                        Agenda((*agenda[:at], *agenda[at + 1 :])), say("{name} is removed", name=entry.title)
-                    ),
-                ),
-            ),
-        ),
+    where = Label(
+        key="appointment.place", text=entry.place or NO_PLACE, description=say("Place"), style=Type.HEADLINE
     )
+    times = (
+        Button(key=f"appointment.{key}", text=text, icon=Icon.CLOCK, on_tap=moved(by_min))
+        for key, text, by_min in MOVES_MIN
+    )
+    there = Button(
+        key="appointment.place_there",
+        text=say("Show on the map"),
+        icon=Icon.GOAL,
+        on_tap=Show("place", entry.place),
+        disabled="" if entry.place else NO_PLACE,
+    )
+    remove = Button(
+        key="appointment.remove",
+        text=say("Remove"),
+        icon=Icon.DELETE,
+        on_tap=Remove(Agenda((*agenda[:index], *agenda[index + 1 :])), say("{name} is removed", name=entry.title)),
+    )
+    whole = card(
+        title(Icon.CALENDAR, joined(" ", (entry.at, entry.title)), "appointment.title"),
+        40,
+        (56, where),
+        64,
+        (72, grid(len(MOVES_MIN), 12, *times)),
+        REST,
+        (72, grid(3, 16, back("appointment"), there, remove)),
+        padding=(28, 20),
+    )
+    return fill(content(state), whole)
 
 
 AppointmentName = Annotated[str, "Its title, or title and place with a comma between, if several have the title."]

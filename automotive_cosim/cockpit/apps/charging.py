@@ -8,16 +8,17 @@ from typing import Annotated, Any
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.map.screens import destination
 from automotive_cosim.cockpit.apps.map.way import nearest
+from automotive_cosim.cockpit.cards import content, heading, rows, slider, switch, time_setter, title
 from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.flow import card, fill, line, panels, stack
 from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, offered
-from automotive_cosim.cockpit.layout import REST, column, panes, row
-from automotive_cosim.cockpit.parts import content, distance, heading, rows, slider, switch, time_setter, title
 from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
 from automotive_cosim.cockpit.signals import ENERGY
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.timer import AT_SEVEN, Timer
-from automotive_cosim.cockpit.widgets import Bar, Card, Label, Tile, Widget
+from automotive_cosim.cockpit.values import distance
+from automotive_cosim.cockpit.widgets import Bar, Label, Tile, Widget
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import say
 
@@ -35,93 +36,57 @@ class ChargingSchedule(AppData):
 
 def charging(state: State) -> tuple[Widget, ...]:
     """The battery, its charge limit and schedule, and stations nearby."""
-    signals = state.signals
-    left, right = panes(content(state), REST, REST)
-    head, _, upper, _, bar, _, limit, _, flap, _, ready, _, time = column(
-        left.inset(28, 20), 40, 8, 44, 8, 12, 14, 84, 16, 60, 12, 60, 16, 72
-    )
-    charge, _, reach = row(upper, 150, 10, REST)
+    signals, timer = state.signals, state.of(ChargingSchedule).timer
     level, cable = signals[ENERGY.LEVEL], say("cable in") if signals[ENERGY.CABLE] else say("no cable")
-    stations = nearest(state, state.of(Gazetteer).of(PlaceKind.CHARGING))
-    timer = state.of(ChargingSchedule).timer
-    return (
-        Card(
-            rect=left,
-            children=(
-                title(head, Icon.CHARGING, say("Charging")),
-                Label(
-                    rect=charge,
-                    key="charging.level",
-                    text=f"{level:.0f} %",
-                    description=say("Battery"),
-                    style=Type.HEADLINE,
-                ),
-                Label(
-                    rect=reach,
-                    key="charging.range",
-                    text=say("{first}, {second}", first=distance(signals, signals[ENERGY.RANGE]), second=cable),
-                    description=say("Range and cable"),
-                    tone="muted",
-                    style=Type.LABEL,
-                    align="right",
-                ),
-                Bar(
-                    rect=bar,
-                    share=round(level / 100, 2),
-                    tone="good" if level > 15 else "warning",
-                ),
-                slider(
-                    limit,
-                    "charging.limit",
-                    say("Charge to"),
-                    Icon.BATTERY,
-                    ENERGY.CHARGE_LIMIT,
-                    signals,
-                ),
-                switch(
-                    flap,
-                    "charging.flap",
-                    say("Charging flap open"),
-                    Icon.FLAP,
-                    ENERGY.CHARGE_FLAP,
-                    signals,
-                    state.vehicle.held(ENERGY.CHARGE_FLAP),
-                ),
-                Tile(
-                    rect=ready,
-                    key="charging.schedule",
-                    text=say("Ready at a set time"),
-                    icon=Icon.CLOCK,
-                    checked=timer.on,
-                    on_tap=Put(
-                        ChargingSchedule(replace(timer, on=not timer.on)),
-                        say("Charging starts immediately")
-                        if timer.on
-                        else say("Charged by {shown}", shown=timer.shown),
-                    ),
-                ),
-                *time_setter(
-                    time,
-                    "charging.schedule",
-                    timer,
-                    lambda moved: Put(ChargingSchedule(moved), say("The time is {time}", time=moved.shown)),
-                ),
-            ),
-        ),
-        heading(right.top(32), say("Stations nearby")),
-        rows(
-            right.below(44),
-            "charging.stations",
-            say("Charging stations"),
-            state,
-            len(stations),
-            lambda index, cell: replace(
-                destination(cell, f"charging.station.{index}", stations[index].name, state),
-                detail=stations[index].detail,
-            ),
-            height=64,
+    far = say("{first}, {second}", first=distance(signals, signals[ENERGY.RANGE]), second=cable)
+    charge = Label(key="charging.level", text=f"{level:.0f} %", description=say("Battery"), style=Type.HEADLINE)
+    reach = Label(
+        key="charging.range",
+        text=far,
+        description=say("Range and cable"),
+        tone="muted",
+        style=Type.LABEL,
+        align="right",
+    )
+    at_once = say("Charging starts immediately")
+    ready = Tile(
+        key="charging.schedule",
+        text=say("Ready at a set time"),
+        icon=Icon.CLOCK,
+        checked=timer.on,
+        on_tap=Put(
+            ChargingSchedule(replace(timer, on=not timer.on)),
+            at_once if timer.on else say("Charged by {shown}", shown=timer.shown),
         ),
     )
+
+    def put(moved: Timer) -> Put:
+        return Put(ChargingSchedule(moved), say("The time is {time}", time=moved.shown))
+
+    battery = card(
+        title(Icon.CHARGING, say("Charging")),
+        8,
+        (44, line((150, charge), 10, reach)),
+        8,
+        (12, Bar(share=round(level / 100, 2), tone="good" if level > 15 else "warning")),
+        14,
+        slider(ENERGY.CHARGE_LIMIT, state),
+        16,
+        switch(ENERGY.CHARGE_FLAP, state),
+        12,
+        ready,
+        16,
+        (72, time_setter("charging.schedule", timer, put)),
+        padding=(28, 20),
+    )
+    stations = rows(
+        "charging.stations",
+        say("Charging stations"),
+        state,
+        nearest(state, state.of(Gazetteer).of(PlaceKind.CHARGING)),
+        lambda index, each: replace(destination(f"charging.station.{index}", each.name, state), detail=each.detail),
+    )
+    return fill(content(state), panels(battery, stack((32, heading(say("Stations nearby"))), 12, stations)))
 
 
 @offered

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.store import Installed
+from automotive_cosim.cockpit.cards import content, rows
+from automotive_cosim.cockpit.flow import fill
 from automotive_cosim.cockpit.messages import Show
-from automotive_cosim.cockpit.parts import content, rows
 from automotive_cosim.cockpit.registry import apps, apps_in
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
@@ -22,28 +23,19 @@ def launcher(state: State) -> tuple[Widget, ...]:
         *apps_in(Where.STATUS),
         *(app for app in apps_in(Where.DOCK) if app.name not in ("home", "apps")),
     )
-    return (
-        rows(
-            content(state),
-            "apps.all",
-            say("Apps"),
-            state,
-            len(offered),
-            lambda index, cell: Button(
-                rect=cell,
-                key=f"apps.{offered[index].name}",
-                text=offered[index].title,
-                icon=offered[index].icon,
-                icon_size=44,
-                stacked=True,
-                style=Type.STRONG,
-                on_tap=Show(offered[index].name),
-            ),
-            columns=6,
-            height=170,
-            gap=16,
-        ),
-    )
+
+    def entry(index: int, app: App) -> Button:
+        return Button(
+            key=f"apps.{app.name}",
+            text=app.title,
+            icon=app.icon,
+            icon_size=44,
+            stacked=True,
+            style=Type.STRONG,
+            on_tap=Show(app.name),
+        )
+
+    return fill(content(state), rows("apps.all", say("Apps"), state, offered, entry, columns=6, height=170, gap=16))
 
 
 APP = App(

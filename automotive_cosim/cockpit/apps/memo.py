@@ -6,16 +6,17 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.cards import back, content, gone, heading, note, picked_at, rows, title
 from automotive_cosim.cockpit.commands import Put, Remove
+from automotive_cosim.cockpit.flow import card, fill, grid, panels, stack
 from automotive_cosim.cockpit.functions import CallMade, named, offered, unknown
-from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, panes
-from automotive_cosim.cockpit.messages import Back, Show
-from automotive_cosim.cockpit.parts import content, gone, heading, minutes, note, picked_at, rows, title
+from automotive_cosim.cockpit.layout import REST
+from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, Command, State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Row, Widget
+from automotive_cosim.cockpit.values import minutes
+from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Row, Widget
 from automotive_cosim.contracts import Feedback, FeedbackCode
 from automotive_cosim.contracts.text import say
 
@@ -59,89 +60,65 @@ class Record(Command):
 
 def memo(state: State) -> tuple[Widget, ...]:
     """Records spoken notes."""
-    left, right = panes(content(state), REST, REST)
-    head, _, picture, _, time, _, record = column(left.inset(28, 20), 40, 50, 128, 22, 52, REST, 88)
-    since = state.of(Memos).recording_since_s
-    memos = state.of(Memos).kept
-
-    def line(index: int, cell: Rect) -> Row:
-        return Row(
-            rect=cell,
-            key=f"memo.{index}",
-            text=memos[index],
-            trail=say("Details"),
-            icon=Icon.MEMO,
-            on_tap=Show("note", memos[index]),
-        )
-
-    return (
-        Card(
-            rect=left,
-            children=(
-                title(head, Icon.MEMO, say("Memo")),
-                Glyph(
-                    rect=picture,
-                    icon=Icon.MICROPHONE,
-                    size=112,
-                    tone="warning" if since is not None else "muted",
-                ),
-                Label(
-                    rect=time,
-                    key="memo.time",
-                    text=minutes(state.time_s - since) if since is not None else say("Ready"),
-                    description=say("Recording") if since is not None else say("Memo"),
-                    style=Type.HEADLINE,
-                    align="centre",
-                ),
-                Button(
-                    rect=record,
-                    key="memo.record",
-                    text=say("Record") if since is None else say("Stop"),
-                    icon=Icon.RECORD if since is None else Icon.STOP,
-                    icon_size=34,
-                    style=Type.TITLE,
-                    look=Look.ACCENT if since is None else Look.CRITICAL,
-                    on_tap=Record(),
-                ),
-            ),
-        ),
-        heading(right.top(32), say("Memos")),
-        rows(right.below(44), "memo.all", say("Memos"), state, len(memos), line, height=60)
-        if memos
-        else note(right.below(44), "memo.empty", say("No memos yet")),
+    since, memos = state.of(Memos).recording_since_s, state.of(Memos).kept
+    time = Label(
+        key="memo.time",
+        text=minutes(state.time_s - since) if since is not None else say("Ready"),
+        description=say("Recording") if since is not None else say("Memo"),
+        style=Type.HEADLINE,
+        align="centre",
     )
+    record = Button(
+        key="memo.record",
+        text=say("Record") if since is None else say("Stop"),
+        icon=Icon.RECORD if since is None else Icon.STOP,
+        icon_size=34,
+        style=Type.TITLE,
+        look=Look.ACCENT if since is None else Look.CRITICAL,
+        on_tap=Record(),
+    )
+    recorder = card(
+        title(Icon.MEMO, say("Memo")),
+        50,
+        (128, Glyph(icon=Icon.MICROPHONE, size=112, tone="warning" if since is not None else "muted")),
+        22,
+        (52, time),
+        REST,
+        (88, record),
+        padding=(28, 20),
+    )
+
+    def entry(index: int, text: str) -> Row:
+        return Row(key=f"memo.{index}", text=text, trail=say("Details"), icon=Icon.MEMO, on_tap=Show("note", text))
+
+    every = rows("memo.all", say("Memos"), state, memos, entry, height=60)
+    listed = every if memos else note("memo.empty", say("No memos yet"))
+    return fill(content(state), panels(recorder, stack((32, heading(say("Memos"))), 12, (REST, listed))))
 
 
 def memo_note(state: State) -> tuple[Widget, ...]:
     """The memo that was tapped; it is deleted here, so that nobody deletes by looking."""
-    area = content(state)
-    inner = area.inset(28, 20)
-    head, _, words, _, acts = column(inner, 40, 24, 160, REST, 72)
     memos = state.of(Memos).kept
-    at = picked_at(state, "note", memos)
-    if at is None:
-        return gone(inner, "note", say("This memo is no longer there"))
-    back, _, delete = acts.columns(3, 16)
-    return (
-        Card(
-            rect=area,
-            children=(
-                title(head, Icon.MEMO, say("Memo")),
-                Label(rect=words, key="note.text", text=memos[at], style=Type.HEADLINE, lines=3),
-                Button(rect=back, key="note.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
-                Button(
-                    rect=delete,
-                    key="note.delete",
-                    text=say("Delete"),
-                    icon=Icon.DELETE,
-                    on_tap=Remove(
-                        replace(state.of(Memos), kept=(*memos[:at], *memos[at + 1 :])),
-                        say("{memo} is deleted", memo=memos[at]),
-                    ),
-                ),
-            ),
-        ),
+    index = picked_at(state, "note", memos)
+    if index is None:
+        return gone(state, "note", say("This memo is no longer there"))
+    text = memos[index]
+    rest = replace(state.of(Memos), kept=(*memos[:index], *memos[index + 1 :]))
+    delete = Button(
+        key="note.delete",
+        text=say("Delete"),
+        icon=Icon.DELETE,
+        on_tap=Remove(rest, say("{memo} is deleted", memo=text)),
     )
+    whole = card(
+        title(Icon.MEMO, say("Memo")),
+        24,
+        (160, Label(key="note.text", text=text, style=Type.HEADLINE, lines=3)),
+        REST,
+        (72, grid(3, 16, back("note"), None, delete)),
+        padding=(28, 20),
+    )
+    return fill(content(state), whole)
 
 
 @offered

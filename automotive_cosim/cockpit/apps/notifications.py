@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
+from automotive_cosim.cockpit.cards import content, note, rows, title
+from automotive_cosim.cockpit.flow import card, fill, line
+from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Dismiss, Show
 from automotive_cosim.cockpit.notices import LOW_BATTERY_PCT, LOW_KPA, NOTICED, TYRES
-from automotive_cosim.cockpit.parts import content, note, rows, title
 from automotive_cosim.cockpit.signals import ENERGY, GLASS
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
-from automotive_cosim.cockpit.widgets import Button, Card, Row, Widget
+from automotive_cosim.cockpit.widgets import Button, Row, Widget
 from automotive_cosim.contracts.text import counted, say
 
 
@@ -40,55 +42,38 @@ def wanting(state: State) -> tuple[tuple[str, Icon, str, str], ...]:
 
 def notifications(state: State) -> tuple[Widget, ...]:
     """What requires attention now, and below it earlier notices, the newest first."""
-    area = content(state)
-    inner = area.inset(28, 20)
-    lines = [
+    lines: list[tuple[str, str, Icon, Show | None]] = [
         *((text, "", icon, Show(screen, item)) for text, icon, screen, item in wanting(state)),
         *(
             (notice.text, notice.clock, notice.icon, Show(*notice.opens) if notice.opens else None)
             for notice in reversed(state.notices)
         ),
     ]
-    return (
-        Card(
-            rect=area,
-            children=(
-                title(inner.top(56).left(600), Icon.BELL, say("Notifications")),
-                Button(
-                    rect=inner.top(56).right_part(200),
-                    key="notifications.clear",
-                    text=say("Clear all"),
-                    icon=Icon.DELETE,
-                    on_tap=Dismiss(all=True),
-                    disabled=""
-                    if state.notices
-                    else say("These clear once they are resolved")
-                    if lines
-                    else say("There is nothing to clear"),
-                ),
-                rows(
-                    inner.below(72),
-                    "notifications.all",
-                    say("Notifications"),
-                    state,
-                    len(lines),
-                    lambda index, cell: Row(
-                        rect=cell,
-                        key=f"notifications.{index}",
-                        text=lines[index][0],
-                        trail=lines[index][1],
-                        icon=lines[index][2],
-                        tone="accent" if lines[index][3] is None else "warning",
-                        raised=True,
-                        on_tap=lines[index][3],
-                    ),
-                    height=60,
-                )
-                if lines
-                else note(inner.below(72), "notifications.empty", say("No notifications")),
-            ),
-        ),
+    nothing = say("These clear once they are resolved") if lines else say("There is nothing to clear")
+    clear = Button(
+        key="notifications.clear",
+        text=say("Clear all"),
+        icon=Icon.DELETE,
+        on_tap=Dismiss(all=True),
+        disabled="" if state.notices else nothing,
     )
+
+    def entry(index: int, each: tuple[str, str, Icon, Show | None]) -> Row:
+        text, clock, icon, opens = each
+        return Row(
+            key=f"notifications.{index}",
+            text=text,
+            trail=clock,
+            icon=icon,
+            tone="accent" if opens is None else "warning",
+            raised=True,
+            on_tap=opens,
+        )
+
+    every = rows("notifications.all", say("Notifications"), state, lines, entry, height=60)
+    listed = every if lines else note("notifications.empty", say("No notifications"))
+    head = line((600, title(Icon.BELL, say("Notifications"))), REST, (200, clear))
+    return fill(content(state), card((56, head), 16, (REST, listed), padding=(28, 20)))
 
 
 APP = App(

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.climate.screens import glass_words
 from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
 from automotive_cosim.cockpit.apps.vehicle.commands import Wash
+from automotive_cosim.cockpit.cards import content, heading
 from automotive_cosim.cockpit.commands import Set
-from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, panes, row
+from automotive_cosim.cockpit.controls import CONTROLS
+from automotive_cosim.cockpit.flow import Block, card, fill, grid, line, panels, stack
+from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Pick
 from automotive_cosim.cockpit.notices import ICE_C
-from automotive_cosim.cockpit.parts import content, distance, heading, speed, speed_unit, temperature
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
@@ -30,9 +31,10 @@ from automotive_cosim.cockpit.signals import (
     Signals,
 )
 from automotive_cosim.cockpit.sky import air_grade, is_dusty
-from automotive_cosim.cockpit.state import Message, State
+from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.cockpit.values import distance, speed, speed_unit, temperature
+from automotive_cosim.cockpit.widgets import Bar, Button, Glyph, Label, Look, Row, Tile, Widget
 from automotive_cosim.contracts import Alert, AlertKind
 from automotive_cosim.contracts.text import Quantity, say, say_in
 
@@ -52,16 +54,15 @@ class OutsideReading:
     """Severity, 0 to 1."""
 
 
-@dataclass(frozen=True, slots=True)
-class Act:
-    """A remedy: a setting, on or off."""
+class Act(NamedTuple):
+    """A remedy: a setting, on or off; ``text`` and ``icon`` if they are not those of its control."""
 
     key: str
-    text: str
-    icon: Icon
     signal: Signal[Any]
-    on: Any
-    off: Any
+    on: Any = True
+    off: Any = False
+    text: str = ""
+    icon: Icon | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,10 +75,6 @@ class Phenomenon:
     read: Callable[[State], OutsideReading]
     acts: tuple[Act, ...]
     alert: AlertKind
-
-
-def _switch(key: str, text: str, icon: Icon, signal: Signal[bool]) -> Act:
-    return Act(key, text, icon, signal, True, False)
 
 
 def _rain(state: State) -> OutsideReading:
@@ -168,15 +165,15 @@ def _glass(state: State) -> OutsideReading:
     return OutsideReading(word, say("Windshield {share} % clear", share=f"{100 * (1 - hidden):.0f}"), hidden)
 
 
-_LOW_BEAM = _switch("low_beam", say("Low beam"), Icon.LOW_BEAM, LIGHTS.LOW_BEAM)
-_RECIRCULATION = _switch("recirculation", say("Recirculate"), Icon.RECIRCULATION, HVAC.RECIRCULATION)
-_PURIFIER = _switch("purifier", say("Purifier"), Icon.PURIFIER, HVAC.PURIFIER)
-_FRONT_DEFROST = _switch("front_defroster", say("Front defrost"), Icon.DEFROST_FRONT, HVAC.FRONT_DEFROSTER)
-_REAR_DEFROST = _switch("rear_defroster", say("Rear defrost"), Icon.DEFROST_REAR, HVAC.REAR_DEFROSTER)
+_LOW_BEAM = Act("low_beam", LIGHTS.LOW_BEAM)
+_RECIRCULATION = Act("recirculation", HVAC.RECIRCULATION)
+_PURIFIER = Act("purifier", HVAC.PURIFIER)
+_FRONT_DEFROST = Act("front_defroster", HVAC.FRONT_DEFROSTER)
+_REAR_DEFROST = Act("rear_defroster", HVAC.REAR_DEFROSTER)
 
 
 def _mode(key: str, text: str, value: str) -> Act:
-    return Act(key, text, Icon.DRIVE_MODE, DRIVE.MODE, value, "NORMAL")
+    return Act(key, DRIVE.MODE, value, "NORMAL", text, Icon.DRIVE_MODE)
 
 
 PHENOMENA: dict[str, Phenomenon] = {
@@ -186,7 +183,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         say("The rain sensor sees the drops on the windshield."),
         _rain,
         (
-            Act("wipers", say("Wipers auto"), Icon.WASHER, BODY.FRONT_WIPER, "RAIN_SENSOR", "OFF"),
+            Act("wipers", BODY.FRONT_WIPER, "RAIN_SENSOR", "OFF", say("Wipers auto"), Icon.WASHER),
             _LOW_BEAM,
             _mode("rain_mode", say("Rain mode"), "RAIN"),
             _REAR_DEFROST,
@@ -200,9 +197,9 @@ PHENOMENA: dict[str, Phenomenon] = {
         _fog,
         (
             _LOW_BEAM,
-            _switch("front_fog", say("Front fog"), Icon.FRONT_FOG, LIGHTS.FRONT_FOG),
-            _switch("rear_fog", say("Rear fog"), Icon.REAR_FOG, LIGHTS.REAR_FOG),
-            _switch("hazard", say("Hazards"), Icon.HAZARD, LIGHTS.HAZARD),
+            Act("front_fog", LIGHTS.FRONT_FOG),
+            Act("rear_fog", LIGHTS.REAR_FOG),
+            Act("hazard", LIGHTS.HAZARD),
         ),
         AlertKind.VISIBILITY,
     ),
@@ -213,9 +210,9 @@ PHENOMENA: dict[str, Phenomenon] = {
         _ice,
         (
             _mode("snow_mode", say("Snow mode"), "SNOW"),
-            _switch("mirrors", say("Mirror heat"), Icon.MIRROR, MIRROR.DRIVER_HEATING),
+            Act("mirrors", MIRROR.DRIVER_HEATING, text=say("Mirror heat"), icon=Icon.MIRROR),
             _REAR_DEFROST,
-            _switch("max_defrost", say("Max defrost"), Icon.DEFROST_FRONT, HVAC.MAX_DEFROST),
+            Act("max_defrost", HVAC.MAX_DEFROST),
         ),
         AlertKind.SLIPPERY,
     ),
@@ -225,7 +222,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         say("Low sun ahead, measured by the light sensor at the mirror. A clean windshield reduces glare."),
         _glare,
         (
-            Act("brightness", say("Bright screen"), Icon.BRIGHTNESS, HMI.BRIGHTNESS, 100.0, 70.0),
+            Act("brightness", HMI.BRIGHTNESS, 100.0, 70.0, say("Bright screen")),
             _LOW_BEAM,
         ),
         AlertKind.VISIBILITY,
@@ -252,8 +249,8 @@ PHENOMENA: dict[str, Phenomenon] = {
         say("Wind from the weather service and the stability control."),
         _wind,
         (
-            _switch("stability", say("Stability"), Icon.STABILITY, ADAS.STABILITY_CONTROL),
-            _switch("lane_keeping", say("Lane keeping"), Icon.STEERING, ADAS.LANE_KEEPING),
+            Act("stability", ADAS.STABILITY_CONTROL, text=say("Stability")),
+            Act("lane_keeping", ADAS.LANE_KEEPING),
         ),
         AlertKind.WEATHER,
     ),
@@ -265,7 +262,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         (
             _FRONT_DEFROST,
             _REAR_DEFROST,
-            _switch("air_conditioning", say("A/C"), Icon.SNOWFLAKE, HVAC.AIR_CONDITIONING),
+            Act("air_conditioning", HVAC.AIR_CONDITIONING),
             _RECIRCULATION,
         ),
         AlertKind.VISIBILITY,
@@ -276,83 +273,66 @@ PHENOMENA: dict[str, Phenomenon] = {
 def outside(state: State) -> tuple[Widget, ...]:
     """The outside screen."""
     chosen = state.picked["outside"]
-    left, right = panes(content(state), 400, REST)
-    lines = left.rows(len(PHENOMENA), 8)
-    return (
-        *(
-            Row(
-                rect=line,
-                key=f"outside.{name}",
-                text=known.title,
-                detail=known.read(state).word,
-                icon=known.icon,
-                tone="warning" if known.read(state).share >= 0.5 else "accent",
-                selected=name == chosen,
-                on_tap=Pick("outside", name),
-            )
-            for line, (name, known) in zip(lines, PHENOMENA.items(), strict=True)
-        ),
-        _detail(right, PHENOMENA[chosen], state),
-    )
+    lines = []
+    for name, known in PHENOMENA.items():
+        reading = known.read(state)
+        line = Row(
+            key=f"outside.{name}",
+            text=known.title,
+            detail=reading.word,
+            icon=known.icon,
+            tone="warning" if reading.share >= 0.5 else "accent",
+            selected=name == chosen,
+            on_tap=Pick("outside", name),
+        )
+        lines.append(line)
+    return fill(content(state), panels((400, grid(1, 8, *lines)), _detail(PHENOMENA[chosen], state)))
 
 
-def _detail(rect: Rect, known: Phenomenon, state: State) -> Widget:
+def _detail(known: Phenomenon, state: State) -> Block:
     reading = known.read(state)
-    head, _, bar, _, about, _, name, _, acts, _, remedies = column(
-        rect.inset(32, 28), 96, 28, 12, 16, 56, 24, 28, 12, 104, REST, 72
+    bad = reading.share >= 0.5
+    words = stack(
+        (52, Label(key="outside.word", text=reading.word, description=known.title, style=Type.HEADLINE)),
+        REST,
+        (36, Label(key="outside.value", text=reading.value, tone="muted")),
     )
-    picture, _, words = row(head, 96, 32, REST)
-    word, _, value = column(words, 52, REST, 36)
-    warn, wash = remedies.columns(2, 12)
-    return Card(
-        rect=rect,
-        children=(
-            Glyph(
-                rect=picture,
-                icon=known.icon,
-                size=88,
-                tone="warning" if reading.share >= 0.5 else "accent",
-            ),
-            Label(
-                rect=word,
-                key="outside.word",
-                text=reading.word,
-                description=known.title,
-                style=Type.HEADLINE,
-            ),
-            Label(rect=value, key="outside.value", text=reading.value, tone="muted"),
-            Bar(
-                rect=bar,
-                share=round(reading.share, 2),
-                tone="warning" if reading.share >= 0.5 else "good",
-            ),
-            Label(
-                rect=about,
-                key="outside.about",
-                text=known.about,
-                style=Type.LABEL,
-                tone="muted",
-                lines=2,
-            ),
-            heading(name, say("What to do")),
-            *(_act(cell, act, state) for cell, act in zip(acts.columns(4, 12), known.acts, strict=False)),
-            Button(
-                rect=warn,
-                key="outside.warn",
-                text=say("Warn the driver"),
-                icon=Icon.WARN,
-                look=Look.ACCENT,
-                on_tap=WarnDriver(Alert(known.alert)),
-            ),
-            Button(rect=wash, key="outside.wash", text=say("Wash the windshield"), icon=Icon.WASHER, on_tap=Wash()),
-        ),
+    explained = Label(key="outside.about", text=known.about, style=Type.LABEL, tone="muted", lines=2)
+    warn = Button(
+        key="outside.warn",
+        text=say("Warn the driver"),
+        icon=Icon.WARN,
+        look=Look.ACCENT,
+        on_tap=WarnDriver(Alert(known.alert)),
+    )
+    wash = Button(key="outside.wash", text=say("Wash the windshield"), icon=Icon.WASHER, on_tap=Wash())
+    picture = Glyph(icon=known.icon, size=88, tone="warning" if bad else "accent")
+    acts = [_act(act, state) for act in known.acts]
+    return card(
+        (96, line((96, picture), 32, words)),
+        28,
+        (12, Bar(share=round(reading.share, 2), tone="warning" if bad else "good")),
+        16,
+        (56, explained),
+        24,
+        heading(say("What to do")),
+        12,
+        (104, grid(4, 12, *acts, *[None] * (4 - len(acts)))),
+        REST,
+        (72, grid(2, 12, warn, wash)),
+        padding=(32, 28),
     )
 
 
-def _act(rect: Rect, act: Act, state: State) -> Tile:
+def _act(act: Act, state: State) -> Tile:
     on = state.signals[act.signal] == act.on
-    message: Message = Set(act.signal, act.off if on else act.on)
-    return Tile(rect=rect, key=f"outside.act.{act.key}", text=act.text, icon=act.icon, checked=on, on_tap=message)
+    return Tile(
+        key=f"outside.act.{act.key}",
+        text=act.text or CONTROLS[act.signal].name,
+        icon=act.icon or CONTROLS[act.signal].icon,
+        checked=on,
+        on_tap=Set(act.signal, act.off if on else act.on),
+    )
 
 
 APP = App(

@@ -7,14 +7,15 @@ from datetime import timedelta
 from typing import Annotated, Any
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.cards import choices, content, heading, note, rows, title
 from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.flow import card, fill, panels, stack
 from automotive_cosim.cockpit.functions import CallMade, offered
-from automotive_cosim.cockpit.layout import REST, column, panes
-from automotive_cosim.cockpit.parts import choices, content, heading, note, rows, title
+from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import AppData, Command, State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Row, Widget
+from automotive_cosim.cockpit.widgets import Button, Label, Look, Row, Widget
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import Quantity, say
 from automotive_cosim.formats.annotations import OneOf
@@ -86,85 +87,66 @@ STAYS = (30, 60, 120, 240)
 
 def parking(state: State) -> tuple[Widget, ...]:
     """Pays for a parking space."""
-    left, right = panes(content(state), 700, REST)
-    head, _, zone_name, _, zones, _, stay_name, _, stays, _, total, _, pay = column(
-        left.inset(28, 20), 40, 24, 28, 8, 72, 24, 28, 8, 72, 24, 56, REST, 88
-    )
     now = state.of(Parking)
-    tickets = tuple(reversed(now.tickets))
-    return (
-        Card(
-            rect=left,
-            children=(
-                title(head, Icon.TICKET, say("Pay for parking")),
-                heading(zone_name, say("Zone")),
-                choices(
-                    zones,
-                    "parking.zone",
-                    [
-                        (
-                            zone[-1].lower(),
-                            zone,
-                            None,
-                            zone == now.zone,
-                            Put(replace(now, zone=zone), say("{zone} is set", zone=zone)),
-                        )
-                        for zone in ZONES
-                    ],
-                ),
-                heading(stay_name, say("Duration")),
-                choices(
-                    stays,
-                    "parking.time",
-                    [
-                        (
-                            str(stay),
-                            f"{stay} min" if stay < 60 else f"{stay // 60} h",
-                            None,
-                            stay == now.minutes,
-                            Put(replace(now, minutes=stay), say("{minutes} minutes are set", minutes=stay)),
-                        )
-                        for stay in STAYS
-                    ],
-                ),
-                Label(
-                    rect=total,
-                    key="parking.price",
-                    text=say("Price {price}", price=Quantity(f"{now.price:.2f}")),
-                    style=Type.HEADLINE,
-                ),
-                Button(
-                    rect=pay,
-                    key="parking.pay",
-                    text=say("Pay now"),
-                    icon=Icon.TICKET,
-                    icon_size=34,
-                    style=Type.TITLE,
-                    look=Look.ACCENT,
-                    on_tap=Pay(),
-                    disabled="" if state.signals[LINK.ONLINE] else OFFLINE,
-                ),
-            ),
-        ),
-        heading(right.top(32), say("Tickets")),
-        rows(
-            right.below(44),
-            "parking.tickets",
-            say("Tickets"),
-            state,
-            len(tickets),
-            lambda index, cell: Row(
-                rect=cell,
-                key=f"parking.ticket.{index}",
-                text=say("{zone} until {time}", zone=tickets[index].zone, time=tickets[index].until),
-                detail=say("Paid {price}", price=Quantity(f"{tickets[index].price:.2f}")),
-                icon=Icon.TICKET,
-            ),
-            height=68,
+    zones = [
+        (
+            zone[-1].lower(),
+            zone,
+            None,
+            zone == now.zone,
+            Put(replace(now, zone=zone), say("{zone} is set", zone=zone)),
         )
-        if tickets
-        else note(right.below(44), "parking.tickets.empty", say("No tickets yet")),
+        for zone in ZONES
+    ]
+    stays = [
+        (
+            str(stay),
+            f"{stay} min" if stay < 60 else f"{stay // 60} h",
+            None,
+            stay == now.minutes,
+            Put(replace(now, minutes=stay), say("{minutes} minutes are set", minutes=stay)),
+        )
+        for stay in STAYS
+    ]
+    price = say("Price {price}", price=Quantity(f"{now.price:.2f}"))
+    pay = Button(
+        key="parking.pay",
+        text=say("Pay now"),
+        icon=Icon.TICKET,
+        icon_size=34,
+        style=Type.TITLE,
+        look=Look.ACCENT,
+        on_tap=Pay(),
+        disabled="" if state.signals[LINK.ONLINE] else OFFLINE,
     )
+    order = card(
+        title(Icon.TICKET, say("Pay for parking")),
+        24,
+        heading(say("Zone")),
+        8,
+        (72, choices("parking.zone", zones)),
+        24,
+        heading(say("Duration")),
+        8,
+        (72, choices("parking.time", stays)),
+        24,
+        (56, Label(key="parking.price", text=price, style=Type.HEADLINE)),
+        REST,
+        (88, pay),
+        padding=(28, 20),
+    )
+
+    def ticket(index: int, each: Ticket) -> Row:
+        return Row(
+            key=f"parking.ticket.{index}",
+            text=say("{zone} until {time}", zone=each.zone, time=each.until),
+            detail=say("Paid {price}", price=Quantity(f"{each.price:.2f}")),
+            icon=Icon.TICKET,
+        )
+
+    paid = rows("parking.tickets", say("Tickets"), state, now.tickets[::-1], ticket, height=68)
+    listed = paid if now.tickets else note("parking.tickets.empty", say("No tickets yet"))
+    return fill(content(state), panels((700, order), stack((32, heading(say("Tickets"))), 12, (REST, listed))))
 
 
 @offered

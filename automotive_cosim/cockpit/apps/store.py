@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.cards import content, rows, title
 from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.flow import card, fill
 from automotive_cosim.cockpit.functions import CallMade, locked, offered, unknown
-from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.parts import content, rows, title
 from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
-from automotive_cosim.cockpit.widgets import Card, Row, Widget
+from automotive_cosim.cockpit.widgets import Row, Widget
 from automotive_cosim.contracts.text import say
 
 
@@ -36,39 +36,27 @@ class Installed(AppData):
 
 def store(state: State) -> tuple[Widget, ...]:
     """Apps that can be installed and removed while parked."""
-    area = content(state)
-    inner = area.inset(28, 20)
-    locked = state.locked(Restriction.NO_SETUP)
-    offered, installed = apps_in(Where.STORE), state.of(Installed)
-    names = [app.name for app in offered]
+    apps, installed = apps_in(Where.STORE), state.of(Installed)
+    names = [app.name for app in apps]
 
-    def line(index: int, cell: Rect) -> Row:
-        app = offered[index]
+    def entry(index: int, app: App) -> Row:
         there = app.name in installed.apps
         return Row(
-            rect=cell,
             key=f"store.{app.name}",
             raised=True,
             text=app.title,
             detail=app.about,
             trail=say("Remove") if there else say("Install"),
             icon=app.icon,
-            locked=locked,
+            locked=state.locked(Restriction.NO_SETUP),
             on_tap=Put(
                 installed.with_app(app.name, not there, names),
                 say("{name} is removed", name=app.title) if there else say("{app} is installed", app=app.title),
             ),
         )
 
-    return (
-        Card(
-            rect=area,
-            children=(
-                title(inner.top(40), Icon.STORE, say("Store")),
-                rows(inner.below(56), "store.apps", say("Apps"), state, len(names), line, height=58, gap=6),
-            ),
-        ),
-    )
+    every = rows("store.apps", say("Apps"), state, apps, entry, height=58, gap=6)
+    return fill(content(state), card(title(Icon.STORE, say("Store")), 16, every, padding=(28, 20)))
 
 
 @offered

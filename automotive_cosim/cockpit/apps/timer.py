@@ -8,14 +8,16 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le, MultipleOf
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.cards import HELD_STEPS, choices, content, heading, title
 from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.flow import card, fill, line
 from automotive_cosim.cockpit.functions import CallMade, offered
-from automotive_cosim.cockpit.layout import REST, column, row
-from automotive_cosim.cockpit.parts import HELD_STEPS, choices, content, heading, minutes, title
+from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, Command, State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Bar, Button, Card, Label, Look, Widget
+from automotive_cosim.cockpit.values import minutes
+from automotive_cosim.cockpit.widgets import Bar, Button, Label, Look, Widget
 from automotive_cosim.contracts import Feedback, Severity, Surroundings
 from automotive_cosim.contracts.text import say
 
@@ -82,11 +84,6 @@ LENGTHS_MIN = (5, 10, 15, 20, 30, 60, 120)
 
 def timer(state: State) -> tuple[Widget, ...]:
     """While it runs, another length makes it end earlier or later."""
-    area = content(state)
-    head, _, line, _, bar, _, name, _, lengths, _, act = column(
-        area.inset(32, 24), 40, 32, 104, 20, 12, 40, 28, 8, 72, REST, 88
-    )
-    less, time, more = row(line, 104, REST, 104)
     now = state.of(Countdown)
     runs = now.begun_s is not None
     left_s = now.left_s(state.time_s)
@@ -96,7 +93,6 @@ def timer(state: State) -> tuple[Widget, ...]:
 
     def step(key: str, words: str, icon: Icon, by_min: int, bound: int, why: str) -> Button:
         return Button(
-            rect=less if by_min < 0 else more,
             key=f"timer.{key}",
             description=words,
             icon=icon,
@@ -106,44 +102,43 @@ def timer(state: State) -> tuple[Widget, ...]:
             disabled=why if now.minutes == bound else "",
         )
 
-    return (
-        Card(
-            rect=area,
-            children=(
-                title(head, Icon.CLOCK, say("Timer"), "timer.title"),
-                step("less", say("Five minutes less"), Icon.MINUS, -STEP_MIN, STEP_MIN, say("It is at its lowest")),
-                Label(
-                    rect=time,
-                    key="timer.left",
-                    text=minutes(left_s),
-                    description=say("Time left") if runs else say("Duration"),
-                    style=Type.DISPLAY,
-                    align="centre",
-                ),
-                step("more", say("Five minutes more"), Icon.PLUS, STEP_MIN, MOST_MIN, say("It is at its highest")),
-                Bar(rect=bar, share=round(left_s / (60 * now.minutes), 2)),
-                heading(name, say("Minutes")),
-                choices(
-                    lengths,
-                    "timer.length",
-                    [
-                        (str(length), str(length), None, length == now.minutes, put(replace(now, minutes=length)))
-                        for length in LENGTHS_MIN
-                    ],
-                ),
-                Button(
-                    rect=act,
-                    key="timer.run",
-                    text=say("Stop") if runs else say("Start"),
-                    icon=Icon.STOP if runs else Icon.PLAY,
-                    icon_size=34,
-                    style=Type.TITLE,
-                    look=Look.CRITICAL if runs else Look.ACCENT,
-                    on_tap=StopTimer() if runs else StartTimer(),
-                ),
-            ),
-        ),
+    less = step("less", say("Five minutes less"), Icon.MINUS, -STEP_MIN, STEP_MIN, say("It is at its lowest"))
+    more = step("more", say("Five minutes more"), Icon.PLUS, STEP_MIN, MOST_MIN, say("It is at its highest"))
+    time = Label(
+        key="timer.left",
+        text=minutes(left_s),
+        description=say("Time left") if runs else say("Duration"),
+        style=Type.DISPLAY,
+        align="centre",
     )
+    lengths = [
+        (str(length), str(length), None, length == now.minutes, put(replace(now, minutes=length)))
+        for length in LENGTHS_MIN
+    ]
+    act = Button(
+        key="timer.run",
+        text=say("Stop") if runs else say("Start"),
+        icon=Icon.STOP if runs else Icon.PLAY,
+        icon_size=34,
+        style=Type.TITLE,
+        look=Look.CRITICAL if runs else Look.ACCENT,
+        on_tap=StopTimer() if runs else StartTimer(),
+    )
+    whole = card(
+        title(Icon.CLOCK, say("Timer"), "timer.title"),
+        32,
+        (104, line((104, less), time, (104, more))),
+        20,
+        (12, Bar(share=round(left_s / (60 * now.minutes), 2))),
+        40,
+        heading(say("Minutes")),
+        8,
+        (72, choices("timer.length", lengths)),
+        REST,
+        (88, act),
+        padding=(32, 24),
+    )
+    return fill(content(state), whole)
 
 
 @offered

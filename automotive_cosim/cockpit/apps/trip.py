@@ -6,16 +6,18 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.cards import SMALL, content, fact, heading, title
+from automotive_cosim.cockpit.flow import card, fill, grid, line
 from automotive_cosim.cockpit.functions import CallMade, offered
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Back, Show
-from automotive_cosim.cockpit.parts import content, distance, fact, minutes, speed, speed_unit, title
 from automotive_cosim.cockpit.signals import ENERGY, HMI
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, Command, State
 from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.values import distance, minutes, speed, speed_unit
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
-from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Widget
+from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Widget
 from automotive_cosim.contracts import Feedback, FeedbackCode, Surroundings
 from automotive_cosim.contracts.text import Quantity, say
 
@@ -92,9 +94,7 @@ class ResetTrip(Command):
 
 def trip(state: State) -> tuple[Widget, ...]:
     """Distance, time and consumption since the last reset."""
-    signals, area = state.signals, content(state)
-    head, _, body, _, acts = column(area.inset(32, 24), 40, 20, 312, REST, 72)
-    reset, _, other = row(acts, 320, REST, 320)
+    signals = state.signals
     metres, seconds, level = odometer(state)
     from_m, from_s, from_level = state.of(TripMeters).since
     driven_m, took_s, used_pct = max(0.0, metres - from_m), seconds - from_s, max(0.0, from_level - level)
@@ -110,73 +110,50 @@ def trip(state: State) -> tuple[Widget, ...]:
         ("trip.consumption", say("Consumption"), Quantity(f"{per_100:.1f} kWh/100 {unit}"), Icon.CHARGING),
         ("trip.range", say("Range"), distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
     )
-    cells = [cell for line in body.rows(2, 16) for cell in line.columns(3, 16)]
-    children: list[Widget] = [title(head, Icon.TRIP, say("Trip A"), "trip.title")]
-    for cell, (key, name, value, icon) in zip(cells, tiles, strict=True):
-        upper, _, lower = column(cell.inset(20, 16), 32, REST, 56)
-        picture, _, words = row(upper, 32, 12, REST)
-        children.append(
-            Card(
-                rect=cell,
-                look="raised",
-                children=(
-                    Glyph(rect=picture, icon=icon, size=28, tone="accent"),
-                    Label(rect=words, text=name, style=Type.LABEL, tone="muted"),
-                    Label(rect=lower, key=key, text=value, description=name, style=Type.HEADLINE),
-                ),
-            )
+    cells = (
+        card(
+            (32, line((32, Glyph(icon=icon, size=28, tone="accent")), 12, heading(name))),
+            REST,
+            (56, Label(key=key, text=value, description=name, style=Type.HEADLINE)),
+            padding=SMALL,
+            look="raised",
         )
-    children.append(Button(rect=reset, key="trip.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=ResetTrip()))
-    children.append(
-        Button(
-            rect=other,
-            key="trip.other",
-            text=say("Trip B"),
-            icon=Icon.TRIP,
-            on_tap=Show("trip_b"),
-        )
+        for key, name, value, icon in tiles
     )
-    return (Card(rect=area, children=tuple(children)),)
+    reset = Button(key="trip.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=ResetTrip())
+    other = Button(key="trip.other", text=say("Trip B"), icon=Icon.TRIP, on_tap=Show("trip_b"))
+    whole = card(
+        title(Icon.TRIP, say("Trip A"), "trip.title"),
+        20,
+        (312, grid(3, 16, *cells)),
+        REST,
+        (72, line((320, reset), REST, (320, other))),
+        padding=(32, 24),
+    )
+    return fill(content(state), whole)
 
 
 def trip_b(state: State) -> tuple[Widget, ...]:
     """Distance, time and energy of trip B; the mean is left to the reader."""
-    area = content(state)
-    head, _, body, _, buttons = column(area.inset(32, 24), 40, 20, 3 * 64, REST, 72)
     driven_m, took_s, used_kwh = state.of(TripMeters).b.at(odometer(state), BATTERY_KWH)
-    facts = (
-        ("trip_b.distance", say("Distance"), distance(state.signals, driven_m)),
-        ("trip_b.time", say("Driving time"), minutes(took_s)),
-        ("trip_b.energy", say("Energy"), Quantity(f"{used_kwh:.1f} kWh")),
+    facts = grid(
+        1,
+        8,
+        fact("trip_b.distance", say("Distance"), distance(state.signals, driven_m)),
+        fact("trip_b.time", say("Driving time"), minutes(took_s)),
+        fact("trip_b.energy", say("Energy"), Quantity(f"{used_kwh:.1f} kWh")),
     )
-    lines = body.left(640).rows(3, 8)
-    return (
-        Card(
-            rect=area,
-            children=(
-                title(head, Icon.TRIP, say("Trip B"), "trip_b.title"),
-                *(
-                    widget
-                    for rect, (key, name, value) in zip(lines, facts, strict=True)
-                    for widget in fact(rect, key, name, value)
-                ),
-                Button(
-                    rect=buttons.left(320),
-                    key="trip_b.reset",
-                    text=say("Reset"),
-                    icon=Icon.TRIP,
-                    on_tap=ResetTrip("b"),
-                ),
-                Button(
-                    rect=buttons.right_part(320),
-                    key="trip_b.back",
-                    text=say("Trip A"),
-                    icon=Icon.BACK,
-                    on_tap=Back(),
-                ),
-            ),
-        ),
+    reset = Button(key="trip_b.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=ResetTrip("b"))
+    back = Button(key="trip_b.back", text=say("Trip A"), icon=Icon.BACK, on_tap=Back())
+    whole = card(
+        title(Icon.TRIP, say("Trip B"), "trip_b.title"),
+        20,
+        (3 * 64, line((640, facts), REST)),
+        REST,
+        (72, line((320, reset), REST, (320, back))),
+        padding=(32, 24),
     )
+    return fill(content(state), whole)
 
 
 @offered

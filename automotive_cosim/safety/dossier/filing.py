@@ -31,11 +31,11 @@ def write_dossier(folder: Path, agent: str = "") -> tuple[Path, Path | None]:
         agent: whose trials; empty if there is only one.
 
     Returns:
-        The page and the PDF; no PDF without the extra ``pdf``.
+        The page and the PDF; no PDF without the extra ``reports``.
 
     Raises:
         UserError: the folder has no judged trials of it, or cannot be written.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     subject = read_subject(folder, agent)
     made = dossier(subject)

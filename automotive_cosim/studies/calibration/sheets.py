@@ -90,7 +90,7 @@ def _tables(path: Path) -> Iterator[tuple[Cells, bool]]:
     data = _data(path)
     if data.startswith(WORKBOOKS):
         if find_spec("python_calamine") is None:
-            hint = install_hint("import")
+            hint = install_hint("maps")
             raise SetupError(f"{path} is a workbook, which requires python-calamine: {hint}, or save it as CSV")
         yield from ((cells, False) for cells in read_limited(_workbook, path, bounds.WORKBOOK, CountsError))
     else:

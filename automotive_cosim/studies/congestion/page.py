@@ -13,8 +13,8 @@ from automotive_cosim.studies.congestion.results import (
     WHOLE,
     CongestionStudy,
     change,
-    cost,
     delay_h,
+    flow_in,
     indices,
     strongest,
 )
@@ -35,7 +35,7 @@ def write_congestion(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not a congestion study's, or cannot be written.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     study = CongestionStudy.read(folder)
     return write_shown(study, shown(study))
@@ -51,47 +51,36 @@ def shown(study: CongestionStudy) -> ShownStudy:
 
 
 def answer(study: CongestionStudy) -> str:
-    """What the study found, in a sentence: the delay, and what the strongest measure does to it."""
+    """What the study found, in at most 40 words: the delay, what the strongest measure does to it, and how much
+    more or less is driven, which is not netted: a gridlock that lets nobody drive saves nothing."""
     plan = study.plan
     seeds = len(list(study.outcomes("")))
     found = indices(plan, (outcome for _, outcome in study.outcomes("")))
     if found is None:
         return "No seed was driven to its end."
     before_h = mean(study, "", lambda each: delay_h(plan, each))
-    too_few = f", too few for an interval, which needs {LEAST_SEEDS}"
+    too_few = f", too few for an interval ({LEAST_SEEDS})"
     over = f"over {counted(seeds, 'seed')}{too_few if seeds < LEAST_SEEDS else ''}"
     if not plan.measures:
         return (
-            f"{plan.opened.name} has a delay of {before_h:.1f} vehicle-hours an hour, lost on the road or waited "
-            f"outside for room to enter; a trip takes {found.travel_time:.2f} "
-            f"times its time on empty roads, and {found.planning_time:.2f} times in the worst twentieth of the "
-            f"time, {over}."
+            f"{plan.opened.name} has a delay of {before_h:.1f} vehicle-hours an hour; a trip takes "
+            f"{found.travel_time:.2f} times its time on empty roads, and {found.planning_time:.2f} times in the "
+            f"worst twentieth of the time, {over}."
         )
     best = study.measures[strongest(study)]
-    total, added = cost(study, best), change(study, best)
-    after = indices(plan, (outcome for _, outcome in study.outcomes(best)))
-    assert after is not None, "somebody drove without the measure too"
-    assert total is not None, "so there are seeds"
-    assert added is not None
-    of = f", of {len(plan.measures)} measures the one that changes most," if len(plan.measures) > 1 else ""
-    lost_h, driven_h = added.value, total.value - added.value
-    driven = (
-        f" and {abs(driven_h):.1f} {'more' if driven_h > 0 else 'fewer'} driven, on other routes or by getting "
-        f"{'further' if driven_h > 0 else 'less far'} in the time"
-        if f"{driven_h:.1f}" not in ("0.0", "-0.0")
-        else ""
-    )
+    added = change(study, best)
+    assert added is not None, "so there are seeds"
     share = f" ({told(added.value / before_h, '+.0%')})" if before_h else ""
-    index = (
-        f"the travel time index goes from {found.travel_time:.2f} to {after.travel_time:.2f}"
-        if f"{found.travel_time:.2f}" != f"{after.travel_time:.2f}"
-        else f"the travel time index stays at {after.travel_time:.2f}"
-    )
+    of = f", of {len(plan.measures)} measures the strongest," if len(plan.measures) > 1 else ""
     away = _kept_away(study, best)
-    lacks = f"; {away}, whose way is in no figure" if away else ""
+    without_km, with_km = (mean(study, each, lambda made: flow_in(plan, made).distance_m) for each in ("", best))
+    driven = with_km / without_km - 1.0 if without_km else 0.0
+    kilometres = f"; {abs(driven):.1%} {'more' if driven > 0 else 'fewer'} kilometres are driven"
+    if f"{abs(driven):.1%}" == "0.0%":
+        kilometres = "; as many kilometres are driven"
     return (
-        f"“{name_of(best)}”{of} {_told(total, 'saves' if not away else 'leaves out')}: {abs(lost_h):.1f} "
-        f"{'more' if lost_h >= 0 else 'fewer'} of delay{share}{driven}; {index}, {over}{lacks}."
+        f"“{name_of(best)}”{of} {_told(added, 'saves' if not away else 'leaves out')} of delay{share}{kilometres}, "
+        f"{over}{f'; {away}' if away else ''}."
     )
 
 
@@ -101,10 +90,8 @@ def _kept_away(study: CongestionStudy, measure: str) -> str:
     cut, kept = sum(each.cut_short for each in outcomes), sum(each.kept_in for each in outcomes)
     if not cut and not kept:
         return ""
-    return (
-        f"{counted(cut, 'trip')} ended before the closed road, where no way led round it, and "
-        f"{counted(kept, 'vehicle')} that would have set out on it did not drive"
-    )
+    kept_in = f"{counted(kept, 'vehicle')} that start there did not drive"
+    return f"{counted(cut, 'trip')} ended before the closed road and {kept_in}"
 
 
 def _told(total: SeedMean, saves: str) -> str:

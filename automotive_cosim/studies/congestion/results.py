@@ -170,8 +170,8 @@ def indices(plan: CongestionPlan, outcomes: Iterable[MeasureOutcome], part: Netw
 
 
 def strongest(study: CongestionStudy) -> int:
-    """Number of the measure that costs or saves most, detours included; 0 without measures."""
-    changes = [cost(study, measure) for measure in study.plan.measures]
+    """Number of the measure that changes the delay most; 0 without measures."""
+    changes = [change(study, measure) for measure in study.plan.measures]
     sizes = [0.0 if each is None else abs(each.value) for each in changes]
     return 1 + sizes.index(max(sizes)) if sizes else 0
 

@@ -41,7 +41,7 @@ def write_days(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not such a study's, or cannot be written.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     study = DaysStudy.read(folder)
     return write_shown(study, shown(study))

@@ -124,7 +124,7 @@ def compare(
         SetupError: eclipse-sumo or scipy is not installed.
     """
     if find_spec("scipy") is None:
-        raise SetupError(f"a system optimum requires scipy: {install_hint('report')}")
+        raise SetupError(f"a system optimum requires scipy: {install_hint('reports')}")
     with variant.new_folder(target) as draft:
         with tempfile.TemporaryDirectory(prefix="automotive-cosim-optimum-") as scratch:
             path = Path(scratch) / ROUTES

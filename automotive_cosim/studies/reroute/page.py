@@ -19,6 +19,7 @@ from automotive_cosim.studies.reroute.data import write_data
 from automotive_cosim.studies.reroute.decisions import write_decisions
 from automotive_cosim.studies.reroute.demand import demand_table, read_demand
 from automotive_cosim.studies.reroute.effects import effects
+from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.reroute.results import Study
 from automotive_cosim.studies.reroute.rows import PolicyChoice
 from automotive_cosim.studies.reroute.tables import STAYING, groups, tables, time_saved_s
@@ -30,7 +31,7 @@ def write_study(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not a study's, has no decision that counts, or cannot be written.
-        SetupError: the extra ``report`` is not installed.
+        SetupError: the extra ``reports`` is not installed.
     """
     study = Study.read(folder)
     if not study.rows:
@@ -66,32 +67,52 @@ def write_study(folder: Path) -> Path:
 
 
 def answer(study: Study) -> str:
-    """What the study found, in a sentence: which policy that rerouted saves the ego how much for each decision."""
-    best: tuple[str, SeedMean, list[PolicyChoice]] | None = None
-    idle: list[str] = []
-    for _, policy, _, chosen in groups(study):
-        found = seed_mean((each.seed, time_saved_s(each)) for each in chosen)
-        if policy in STAYING or found is None:
+    """What the study found, in a sentence: the policy to follow that gains most, and what it gains at every share
+    of rerouting cars.
+
+    ``best`` knows all futures, so nobody can follow it: it is told only where nothing else was compared.
+    """
+    found: dict[str, list[tuple[float, SeedMean, list[PolicyChoice]]]] = {}
+    idle: dict[str, None] = {}
+    first_s = study.plan.ages_s[0]
+    for share, policy, age_s, chosen in groups(study):
+        gain = seed_mean((each.seed, time_saved_s(each)) for each in chosen)
+        if policy in STAYING or age_s != first_s or gain is None:
             continue
-        if not any(each.rerouted for each in chosen):
-            idle.append(policy)
-        elif best is None or found.value > best[1].value:
-            best = policy, found, chosen
-    never = ", ".join(f"“{each}”" for each in dict.fromkeys(idle)) + " rerouted nowhere"
-    if best is None:
+        found.setdefault(policy, []).append((share, gain, chosen))
+    for policy, shares in list(found.items()):
+        if not any(each.rerouted for *_, chosen in shares for each in chosen):
+            del found[policy]
+            idle[policy] = None
+    never = ", ".join(f"“{each}”" for each in idle) + " rerouted nowhere"
+    if not found:
         return f"{never}." if idle else "No decision to reroute was compared."
-    policy, found, chosen = best
-    bounds = found.interval
-    sure = "" if bounds is None else f" ({bounds.low:.0f} to {bounds.high:.0f})".replace("-", "−")
-    verb = "saves" if found.value >= 0 else "costs"
-    told = f"Rerouting by “{policy}” {verb} {abs(found.value):.0f} s{sure} a decision{_parts(chosen)}"
-    over = f"{counted(found.count, 'decision')} of {counted(found.seeds, 'seed')}"
-    rest = f"; {never}" if idle else ""
+    followed = {each: shares for each, shares in found.items() if parse_policy(each).rule is not PolicyRule.BEST}
+    policy, shares = max((followed or found).items(), key=lambda each: fmean(gain.value for _, gain, _ in each[1]))
+    gains = [gain for _, gain, _ in shares]
+    told = " and ".join(
+        _gained(gain) + ("" if len(shares) == 1 else f" with {share:.0%} of the other cars rerouting")
+        for share, gain, _ in shares
+    )
+    told = f"Rerouting by “{policy}” {told}"
+    if len(shares) == 1:
+        told += _parts(shares[0][2])
+    count, seeds = sum(each.count for each in gains), max(each.seeds for each in gains)
+    over = f"over {counted(count, 'decision')} of {counted(seeds, 'seed')}"
+    is_bounded = all(each.interval is not None for each in gains)
     noise_s = study.noise().time_s
-    if bounds is None and abs(found.value) <= noise_s:
+    if not is_bounded and all(abs(each.value) <= noise_s for each in gains):
         told += f", which is within the noise floor of {noise_s:.0f} s"
-    few = "" if bounds else f", too few for an interval, which needs {LEAST_SEEDS} seeds"
-    return f"{told}, over {over}{few}{rest}."
+    few = "" if is_bounded else f", too few for an interval, which needs {LEAST_SEEDS} seeds"
+    return f"{told}, {over}{few}{f'; {never}' if idle else ''}."
+
+
+def _gained(gain: SeedMean) -> str:
+    bounds = gain.interval
+    sign = 1.0 if gain.value >= 0 else -1.0
+    low_s, high_s = sorted((sign * bounds.low, sign * bounds.high)) if bounds else (0.0, 0.0)
+    sure = f" ({low_s:.0f} to {high_s:.0f})".replace("-", "−") if bounds else ""
+    return f"{'saves' if sign > 0 else 'costs'} {abs(gain.value):.0f} s{sure} a decision"
 
 
 def _parts(chosen: Sequence[PolicyChoice]) -> str:

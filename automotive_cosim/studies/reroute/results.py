@@ -109,7 +109,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
     try:
         import pandas as pd
     except ImportError as error:
-        raise SetupError(f"load_study requires pandas: {install_hint('report')}") from error
+        raise SetupError(f"load_study requires pandas: {install_hint('reports')}") from error
     return pd.DataFrame([columns(choice) for choice in Study.read(Path(folder)).all_choices])
 
 

@@ -5,34 +5,36 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.climate.state import ClimateSchedule
-from automotive_cosim.cockpit.commands import Put, Set
-from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, panes, row
-from automotive_cosim.cockpit.messages import Show
-from automotive_cosim.cockpit.parts import (
-    choices,
+from automotive_cosim.cockpit.cards import (
+    SMALL,
+    about,
+    choice,
     content,
     fact,
-    grouped,
     heading,
     levels,
     slider,
     stepper,
     switch,
-    temperature,
     time_setter,
     title,
 )
+from automotive_cosim.cockpit.commands import Put, Set
+from automotive_cosim.cockpit.controls import CONTROLS, shown
+from automotive_cosim.cockpit.flow import Block, at, card, fill, grid, line, panels, stack
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, panes
+from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.signals import GLASS, HVAC, SEAT, Signal
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Bar, Button, Card, Label, Tile, Widget
+from automotive_cosim.cockpit.timer import Timer
+from automotive_cosim.cockpit.values import temperature
+from automotive_cosim.cockpit.widgets import Bar, Button, Label, Tile, Widget
 from automotive_cosim.contracts.text import Text, say
 
 SEAT_LEVELS = ((0.0, say("Off")), (50.0, say("Low")), (100.0, say("High")))
 AIRING_LEVELS = ((0.0, say("Off")), (-50.0, say("Low")), (-100.0, say("High")))
-_SET = {"driver": say("Driver's temperature"), "passenger": say("Passenger's temperature")}
-"""Names of what is set, by the seat."""
 WHEEL_LEVELS = ((0.0, say("Off")), (100.0, say("On")))
 
 
@@ -41,13 +43,13 @@ def climate(state: State) -> tuple[Widget, ...]:
     driver, middle, passenger = _three(content(state))
     if state.roads.network.left_hand:
         driver, passenger = passenger, driver
-    air, _, switches, _, glass = column(middle, 240, GAP, 188, GAP, REST)
+    wheel = levels(SEAT.STEERING_WHEEL_HEATING, state, WHEEL_LEVELS)
+    sync = switch(HVAC.SYNC, state)
+    beside = _zone("passenger", say("Passenger"), HVAC.PASSENGER_TEMPERATURE, SEAT.PASSENGER_HEATING, sync, state)
     return (
-        _zone(driver, "driver", say("Driver"), HVAC.DRIVER_TEMPERATURE, SEAT.DRIVER_HEATING, state),
-        _zone(passenger, "passenger", say("Passenger"), HVAC.PASSENGER_TEMPERATURE, SEAT.PASSENGER_HEATING, state),
-        _air(air, state),
-        *_switches(switches, state),
-        _glass(glass, state),
+        *fill(driver, _zone("driver", say("Driver"), HVAC.DRIVER_TEMPERATURE, SEAT.DRIVER_HEATING, wheel, state)),
+        *fill(passenger, beside),
+        *fill(middle, stack((240, _air(state)), GAP, (188, _switches(state)), GAP, (REST, _glass(state)))),
     )
 
 
@@ -61,178 +63,95 @@ def _three(rect: Rect) -> tuple[Rect, Rect, Rect]:
     return driver, middle, passenger
 
 
-def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[float], state: State) -> Widget:
-    signals = state.signals
-    head, _, shown, _, steps, _, seats = column(rect.inset(20, 16), 30, 6, 88, 12, 64, REST, 260)
-    tiles = seats.rows(3, 10)
-    third = (
+def _zone(who: str, name: str, warmth: Signal[float], seat: Signal[float], third: Tile, state: State) -> Block:
+    control = CONTROLS[warmth]
+    value = Label(
+        key=control.key,
+        text=shown(warmth, state.signals),
+        description=control.name,
+        style=Type.DISPLAY,
+        align="centre",
+    )
+    steps = stepper(warmth, state.signals)
+    steps.parts = (steps.parts[0], None, None, steps.parts[-1])  # the value stands above it, larger
+    tiles = grid(
+        1,
+        10,
+        levels(seat, state, SEAT_LEVELS, group=name),
         levels(
-            tiles[2],
-            "hvac.steering_wheel_heating",
-            say("Steering wheel heat"),
-            Icon.STEERING,
-            SEAT.STEERING_WHEEL_HEATING,
-            signals,
-            WHEEL_LEVELS,
-        )
-        if who == "driver"
-        else switch(tiles[2], "hvac.sync", say("Sync"), Icon.SYNC, HVAC.SYNC, signals)
-    )
-    return Card(
-        rect=rect,
-        children=(
-            heading(head, name),
-            Label(
-                rect=shown,
-                key=f"hvac.{who}_temperature",
-                text=temperature(signals, signals[warmth]),
-                description=_SET[who],
-                style=Type.DISPLAY,
-                align="centre",
-            ),
-            *_plus_minus(steps, who, warmth, state),
-            grouped(
-                levels(
-                    tiles[0],
-                    f"hvac.{who}_seat_heating",
-                    say("Seat heat"),
-                    Icon.SEAT_HEATER,
-                    seat,
-                    signals,
-                    SEAT_LEVELS,
-                ),
-                name,
-            ),
-            grouped(
-                levels(
-                    tiles[1],
-                    f"hvac.{who}_seat_airing",
-                    say("Seat ventilation"),
-                    Icon.SEAT_COOLER,
-                    seat,
-                    signals,
-                    AIRING_LEVELS,
-                ),
-                name,
-            ),
-            third,
+            seat,
+            state,
+            AIRING_LEVELS,
+            key=f"hvac.{who}_seat_airing",
+            name=say("Seat ventilation"),
+            icon=Icon.SEAT_COOLER,
+            group=name,
         ),
+        third,
+    )
+    return card((30, heading(name)), 6, (88, value), 12, steps, REST, (260, tiles), padding=SMALL)
+
+
+def _air(state: State) -> Block:
+    fastest = Button(
+        key="hvac.fan.max",
+        text=say("Max"),
+        description=say("Fan at full speed"),
+        on_tap=Set(HVAC.FAN_SPEED, HVAC.FAN_SPEED.high),
+    )
+    return card(
+        (84, line(slider(HVAC.FAN_SPEED, state), 20, (88, at(lambda box: box.middle(88, 64), fastest)))),
+        10,
+        heading(say("Airflow")),
+        REST,
+        (76, choice(HVAC.AIR_DISTRIBUTION, state)),
+        padding=SMALL,
     )
 
 
-def _plus_minus(rect: Rect, who: str, warmth: Signal[float], state: State) -> tuple[Widget, ...]:
-    less, _, more = stepper(rect, f"hvac.{who}_temperature", _SET[who], warmth, state.signals, str)
-    return less, more
-
-
-def _air(rect: Rect, state: State) -> Widget:
-    signals = state.signals
-    blower, _, name, _, ways_to = column(rect.inset(20, 16), 84, 10, 28, REST, 76)
-    fan, _, fastest = row(blower, REST, 20, 88)
-    flow = signals[HVAC.AIR_DISTRIBUTION]
-    ways = (
-        ("up", say("Windshield"), Icon.AIR_UP, "UP"),
-        ("middle", say("Face"), Icon.AIR_MIDDLE, "MIDDLE"),
-        ("down", say("Feet"), Icon.AIR_DOWN, "DOWN"),
-    )
-    return Card(
-        rect=rect,
-        children=(
-            slider(fan, "hvac.fan", say("Fan speed"), Icon.CLIMATE, HVAC.FAN_SPEED, signals),
-            Button(
-                rect=fastest.middle(88, 64),
-                key="hvac.fan.max",
-                text=say("Max"),
-                description=say("Fan at full speed"),
-                on_tap=Set(HVAC.FAN_SPEED, HVAC.FAN_SPEED.high),
-            ),
-            heading(name, say("Airflow")),
-            choices(
-                ways_to,
-                "hvac.air",
-                [
-                    (key, text, icon, flow == value, Set(HVAC.AIR_DISTRIBUTION, value))
-                    for key, text, icon, value in ways
-                ],
-            ),
-        ),
-    )
-
-
-def _switches(rect: Rect, state: State) -> tuple[Widget, ...]:
-    signals = state.signals
-    upper, lower = rect.rows(2, 12)
-    cells = (*upper.columns(4, 12), *lower.columns(4, 12))
+def _switches(state: State) -> Block:
     known = (
-        ("hvac.air_conditioning", say("A/C"), Icon.SNOWFLAKE, HVAC.AIR_CONDITIONING),
-        ("hvac.auto", say("Auto"), Icon.AUTO, HVAC.AUTO),
-        ("hvac.recirculation", say("Recirculate"), Icon.RECIRCULATION, HVAC.RECIRCULATION),
-        ("hvac.max_cooling", say("Max A/C"), Icon.SNOWFLAKE, HVAC.MAX_COOLING),
-        ("hvac.front_defroster", say("Front defrost"), Icon.DEFROST_FRONT, HVAC.FRONT_DEFROSTER),
-        ("hvac.rear_defroster", say("Rear defrost"), Icon.DEFROST_REAR, HVAC.REAR_DEFROSTER),
-        ("hvac.max_defrost", say("Max defrost"), Icon.DEFROST_FRONT, HVAC.MAX_DEFROST),
-        ("hvac.purifier", say("Purifier"), Icon.PURIFIER, HVAC.PURIFIER),
+        HVAC.AIR_CONDITIONING,
+        HVAC.AUTO,
+        HVAC.RECIRCULATION,
+        HVAC.MAX_COOLING,
+        HVAC.FRONT_DEFROSTER,
+        HVAC.REAR_DEFROSTER,
+        HVAC.MAX_DEFROST,
+        HVAC.PURIFIER,
     )
-    return tuple(
-        switch(cell, key, name, icon, signal, signals)
-        for cell, (key, name, icon, signal) in zip(cells, known, strict=True)
-    )
+    return grid(4, 12, *(switch(signal, state) for signal in known))
 
 
-def _cabin(rect: Rect, state: State) -> tuple[Widget, ...]:
+def _glass(state: State) -> Block:
+    """The visibility through the windows, and the air in the cabin."""
     signals = state.signals
-    return (
-        Label(
-            rect=rect.top(32),
-            key="hvac.cabin_temperature",
-            text=say("Cabin {temperature}", temperature=temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
-            style=Type.LABEL,
-        ),
-        Label(
-            rect=rect.bottom_part(30),
-            key="hvac.cabin_humidity",
-            text=say("Humidity {humidity} %", humidity=f"{signals[HVAC.CABIN_HUMIDITY]:.0f}"),
-            style=Type.CAPTION,
-            tone="muted",
-        ),
-    )
-
-
-def _glass(rect: Rect, state: State) -> Widget:
-    """The visibility through the windows."""
-    signals = state.signals
-    glazing, _, cabin, _, beside = row(rect.inset(20, 10), 344, 20, REST, 12, 112)
-    panes = (
+    glasses = (
         ("windshield", say("Windshield"), signals[GLASS.WINDSHIELD_FOG], signals[GLASS.WINDSHIELD_FILM]),
         ("rear_window", say("Rear window"), signals[GLASS.REAR_FOG], signals[GLASS.REAR_FILM]),
     )
-    children: list[Widget] = []
-    for half, (key, name, fog, film) in zip(glazing.columns(2, 20), panes, strict=True):
-        words, _, bar, _ = column(half, REST, 8, 8, 4)
+    glazing = []
+    for key, name, fog, film in glasses:
+        text = say("{pane} {state}", pane=name, state=glass_words(fog, film)[1])
         clear = round((1 - fog) * (1 - film) * 100)
-        children += [
-            Label(
-                rect=words,
-                key=f"glass.{key}",
-                text=say("{pane} {state}", pane=name, state=glass_words(fog, film)[1]),
-                style=Type.LABEL,
-                lines=2,
-            ),
-            Bar(
-                rect=bar,
-                share=clear / 100,
-                tone="good" if clear > 70 else "warning",
-            ),
-        ]
+        words = Label(key=f"glass.{key}", text=text, style=Type.LABEL, lines=2)
+        bar = Bar(share=clear / 100, tone="good" if clear > 70 else "warning")
+        glazing.append(stack((REST, words), 8, (8, bar), 4))
+    warmth = say("Cabin {temperature}", temperature=temperature(signals, signals[HVAC.CABIN_TEMPERATURE]))
+    humidity = say("Humidity {humidity} %", humidity=f"{signals[HVAC.CABIN_HUMIDITY]:.0f}")
+    cabin = stack(
+        (32, Label(key="hvac.cabin_temperature", text=warmth, style=Type.LABEL)),
+        REST,
+        (30, about("hvac.cabin_humidity", humidity, 1)),
+    )
     more = Button(
-        rect=beside,
         key="hvac.comfort",
         text=say("More"),
         description=say("Rear seats and schedule"),
         icon=Icon.CLOCK,
         on_tap=Show("comfort"),
     )
-    return Card(rect=rect, children=(*children, *_cabin(cabin, state), more))
+    return card((REST, line((344, grid(2, 20, *glazing)), 20, cabin, 12, (112, more))), padding=(20, 10))
 
 
 def glass_words(fog: float, film: float) -> tuple[Text, Text]:
@@ -247,100 +166,65 @@ def glass_words(fog: float, film: float) -> tuple[Text, Text]:
 
 def comfort(state: State) -> tuple[Widget, ...]:
     """Rear seats and the climate schedule."""
-    left, right = panes(content(state), REST, REST)
-    return _rear(left, state), _schedule(right, state)
+    return fill(content(state), panels(_rear(state), _schedule(state)))
 
 
-def _rear(rect: Rect, state: State) -> Widget:
+def _rear(state: State) -> Block:
     signals = state.signals
-    head, _, seats, _, air, _, facts = column(rect.inset(28, 24), 40, 20, 120, 32, 48, 16, 212)
-    tiles = seats.columns(2, 16)
-    known = (
+    seats = (
+        levels(signal, state, SEAT_LEVELS, told=say("{name}: {value}", name=name, value=say("Seat heat")))
+        for signal, name in (
+            (SEAT.REAR_LEFT_HEATING, say("Rear left")),
+            (SEAT.REAR_RIGHT_HEATING, say("Rear right")),
+        )
+    )
+    facts = (
         ("temperature", say("Temperature"), temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
         ("humidity", say("Humidity"), f"{signals[HVAC.CABIN_HUMIDITY]:.0f} %"),
         ("air", say("Air intake"), say("Inside") if signals[HVAC.RECIRCULATION] else say("Outside")),
         ("purifier", say("Purifier"), say("On") if signals[HVAC.PURIFIER] else say("Off")),
         ("fine_dust", say("Fine particles"), f"{signals[HVAC.CABIN_FINE_DUST]:.0f} µg/m³"),
     )
-    return Card(
-        rect=rect,
-        children=(
-            title(head, Icon.SEAT_HEATER, say("Rear seats")),
-            replace(
-                levels(
-                    tiles[0],
-                    "hvac.rear_left_seat_heating",
-                    say("Left"),
-                    Icon.SEAT_HEATER,
-                    SEAT.REAR_LEFT_HEATING,
-                    signals,
-                    SEAT_LEVELS,
-                ),
-                description=say("{name}: {value}", name=say("Rear left"), value=say("Seat heat")),
-            ),
-            replace(
-                levels(
-                    tiles[1],
-                    "hvac.rear_right_seat_heating",
-                    say("Right"),
-                    Icon.SEAT_HEATER,
-                    SEAT.REAR_RIGHT_HEATING,
-                    signals,
-                    SEAT_LEVELS,
-                ),
-                description=say("{name}: {value}", name=say("Rear right"), value=say("Seat heat")),
-            ),
-            title(air.left(air.width - 180), Icon.AIR_QUALITY, say("Cabin air")),
-            Button(
-                rect=air.right_part(160),
-                key="comfort.cabin",
-                text=say("Cabin"),
-                description=say("Who is aboard, and keep climate on"),
-                on_tap=Show("cabin"),
-            ),
-            *(
-                widget
-                for line, (key, name, value) in zip(facts.rows(5, 8), known, strict=True)
-                for widget in fact(line, f"comfort.{key}", name, value)
-            ),
-        ),
+    cabin = Button(
+        key="comfort.cabin",
+        text=say("Cabin"),
+        description=say("Who is aboard, and keep climate on"),
+        on_tap=Show("cabin"),
+    )
+    return card(
+        title(Icon.SEAT_HEATER, say("Rear seats")),
+        20,
+        (120, grid(2, 16, *seats)),
+        32,
+        (48, line(title(Icon.AIR_QUALITY, say("Cabin air")), 20, (160, cabin))),
+        16,
+        (212, grid(1, 8, *(fact(f"comfort.{key}", name, value) for key, name, value in facts))),
     )
 
 
-def _schedule(rect: Rect, state: State) -> Widget:
-    head, _, prepare, _, time, _, about = column(rect.inset(28, 24), 40, 20, 68, 28, 72, 24, 64)
+def _schedule(state: State) -> Block:
     timer = state.of(ClimateSchedule).timer
-    on = timer.on
-    return Card(
-        rect=rect,
-        children=(
-            title(head, Icon.CLOCK, say("Schedule")),
-            Tile(
-                rect=prepare,
-                key="climate.schedule",
-                text=say("Precondition the cabin"),
-                icon=Icon.CLIMATE,
-                checked=on,
-                on_tap=Put(
-                    ClimateSchedule(replace(timer, on=not on)),
-                    say("The schedule is off")
-                    if on
-                    else say("The cabin will be ready at {time}", time=timer.shown),
-                ),
-            ),
-            *time_setter(
-                time,
-                "climate.schedule",
-                timer,
-                lambda moved: Put(ClimateSchedule(moved), say("The time is {time}", time=moved.shown)),
-            ),
-            Label(
-                rect=about,
-                key="climate.schedule.about",
-                text=say("The climate control starts half an hour before, and the cabin is ready at this time."),
-                style=Type.CAPTION,
-                tone="muted",
-                lines=3,
-            ),
+    ready = say("The cabin will be ready at {time}", time=timer.shown)
+    prepare = Tile(
+        key="climate.schedule",
+        text=say("Precondition the cabin"),
+        icon=Icon.CLIMATE,
+        checked=timer.on,
+        on_tap=Put(
+            ClimateSchedule(replace(timer, on=not timer.on)), say("The schedule is off") if timer.on else ready
         ),
+    )
+    words = say("The climate control starts half an hour before, and the cabin is ready at this time.")
+
+    def put(moved: Timer) -> Put:
+        return Put(ClimateSchedule(moved), say("The time is {time}", time=moved.shown))
+
+    return card(
+        title(Icon.CLOCK, say("Schedule")),
+        20,
+        (68, prepare),
+        28,
+        (72, time_setter("climate.schedule", timer, put)),
+        24,
+        (64, about("climate.schedule.about", words, 3)),
     )

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from automotive_cosim.cockpit.apps.cabin import KINDS, SEATS
+from automotive_cosim.cockpit.flow import fill, framed, grid, line
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.notices import LOW_KPA
 from automotive_cosim.cockpit.occupants import Kind, Seat, seated
-from automotive_cosim.cockpit.parts import distance, pressure, speed, speed_unit
 from automotive_cosim.cockpit.sensor_range import (
     BLUE_LIGHT_M,
     CAMERA_M,
@@ -22,7 +22,8 @@ from automotive_cosim.cockpit.sensor_range import (
 from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOTION, OCCUPANT, SEAT, TYRE, Signals
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
+from automotive_cosim.cockpit.values import distance, pressure, speed, speed_unit
+from automotive_cosim.cockpit.widgets import Glyph, Label, Widget
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
     DrivingState,
@@ -286,15 +287,12 @@ def plate(x: int, y: int, width: int, state: State) -> tuple[Widget, ...]:
     if not shown:
         return ()
     rect = Rect(x, y, width, 12 + LINE_PX * len(shown))
-    lines: list[Widget] = []
-    for sight, line in zip(shown, rect.inset(14, 6).rows(len(shown), 0), strict=True):
-        lines.append(Glyph(rect=line.left(30), icon=ICONS[sight.kind], size=24, tone="accent"))
-        lines.append(
-            Label(
-                rect=line.right_part(line.width - 40),
-                key=f"ahead.{sight.kind}",
-                text=sight.text,
-                style=Type.LABEL,
-            )
+    lines = (
+        line(
+            (30, Glyph(icon=ICONS[sight.kind], size=24, tone="accent")),
+            10,
+            Label(key=f"ahead.{sight.kind}", text=sight.text, style=Type.LABEL),
         )
-    return (Card(rect=rect, look="plate", children=tuple(lines)),)
+        for sight in shown
+    )
+    return fill(rect, framed(grid(1, 0, *lines), (14, 6), look="plate"))

@@ -9,28 +9,20 @@ from automotive_cosim.cockpit.apps.map import lookout
 from automotive_cosim.cockpit.apps.map.commands import Follow, Guide, Zoom
 from automotive_cosim.cockpit.apps.map.scene import Spot, box_of, ego, goal, incidents, jam, map_camera, scene
 from automotive_cosim.cockpit.apps.map.state import Navigation, Turn, Viewpoint, turns
+from automotive_cosim.cockpit.cards import HELD_STEPS, choices, content, heading, note, rows, search
 from automotive_cosim.cockpit.commands import Set
+from automotive_cosim.cockpit.flow import Block, at, card, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
 from automotive_cosim.cockpit.messages import Pick, Show
-from automotive_cosim.cockpit.parts import (
-    HELD_STEPS,
-    choices,
-    content,
-    distance,
-    heading,
-    rows,
-    search,
-    sign_figure,
-    sign_in_words,
-)
 from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.values import distance, sign_figure, sign_in_words
 from automotive_cosim.cockpit.widgets import (
     Badge,
     Button,
@@ -68,7 +60,7 @@ CHARGER, MARK, STEP = 28, 40, 5
 
 def map_screen(state: State) -> tuple[Widget, ...]:
     """Search, favourites and recent destinations next to the map."""
-    return *_panel(panel(state), state), sight(state)
+    return *fill(panel(state), _panel(state)), sight(state)
 
 
 def panel(state: State) -> Rect:
@@ -91,62 +83,56 @@ def sight(state: State) -> Widget:
     left, _, keys = row(rect.inset(20), 560, REST, 64)
     turn, _, lowest = column(left, 72, REST, 56)
     plate = lowest.left(420)
-    north, _, voice, _, closer, _, further, _ = column(keys, 64, REST, 64, 12, 64, 12, 64, 0)
     ahead = next_turn(state)
-    closer_in = Zoom(-1) if state.of(Viewpoint).zoom else None
+    zoom = state.of(Viewpoint).zoom
     noticed = lookout.plate(rect.x + 20, turn.bottom + 12 if ahead else turn.y, 440, state)
     sign = sign_view(Rect(plate.right + 12, plate.bottom - 64, 64, 64), "map.sign", state)
+    silent = state.signals[VOICE.GUIDANCE] == "MUTED"
+    voice = Button(
+        key="map.voice",
+        description=say("Guidance is silent") if silent else say("Guidance speaks"),
+        icon=Icon.MUTE if silent else Icon.VOICE,
+        look=Look.FLOATING,
+        on_tap=Set(VOICE.GUIDANCE, "UNMUTED" if silent else "MUTED"),
+    )
+
+    def zoomed(key: str, words: str, icon: Icon, by: int, end: str) -> Button:
+        return Button(
+            key=f"map.zoom_{key}",
+            description=words,
+            icon=icon,
+            look=Look.FLOATING,
+            on_tap=Zoom(by),
+            on_hold=Zoom(by * HELD_STEPS),
+            disabled="" if 0 <= zoom + by < len(ZOOMS_M_PER_PX) else end,
+        )
+
+    closer = zoomed("in", say("Zoom in"), Icon.PLUS, -1, say("The map cannot zoom in further"))
+    further = zoomed("out", say("Zoom out"), Icon.MINUS, 1, say("The map cannot zoom out further"))
+    buttons = fill(
+        keys,
+        stack((64, _orientation(state)), REST, (64, voice), 12, (64, closer), 12, (64, further)),
+    )
+    north, *others = (button.rect for button in buttons)
     over = (
         *(each.rect for each in sign),
         plate,
-        voice,
-        closer,
-        further,
+        *others,
         north,
         *((turn,) if ahead else ()),
         *(card.rect for card in noticed),
     )
-    silent = state.signals[VOICE.GUIDANCE] == "MUTED"
+    view = map_view(rect, "map.view", state, map_camera(state), over, None, Zoom(-1) if zoom else None, pans=True)
     return Card(
         rect=rect,
         look="none",
         children=(
-            map_view(rect, "map.view", state, map_camera(state), over, None, closer_in, pans=True),
-            *((_turn_plate(turn, ahead, state),) if ahead else ()),
+            view,
+            *(fill(turn, _turn_plate(ahead, state)) if ahead else ()),
             *noticed,
             *sign,
-            street_plate(plate, state),
-            _orientation(north, state),
-            Button(
-                rect=voice,
-                key="map.voice",
-                description=say("Guidance is silent") if silent else say("Guidance speaks"),
-                icon=Icon.MUTE if silent else Icon.VOICE,
-                look=Look.FLOATING,
-                on_tap=Set(VOICE.GUIDANCE, "UNMUTED" if silent else "MUTED"),
-            ),
-            Button(
-                rect=closer,
-                key="map.zoom_in",
-                description=say("Zoom in"),
-                icon=Icon.PLUS,
-                look=Look.FLOATING,
-                on_tap=Zoom(-1),
-                on_hold=Zoom(-HELD_STEPS),
-                disabled="" if state.of(Viewpoint).zoom > 0 else say("The map cannot zoom in further"),
-            ),
-            Button(
-                rect=further,
-                key="map.zoom_out",
-                description=say("Zoom out"),
-                icon=Icon.MINUS,
-                look=Look.FLOATING,
-                on_tap=Zoom(1),
-                on_hold=Zoom(HELD_STEPS),
-                disabled=""
-                if state.of(Viewpoint).zoom < len(ZOOMS_M_PER_PX) - 1
-                else say("The map cannot zoom out further"),
-            ),
+            *fill(plate, street_plate(state)),
+            *buttons,
         ),
     )
 
@@ -178,17 +164,16 @@ def _last_sign(sign: RoadSign | None, state: State) -> str:
     return say("Last sign: {sign}", sign=shown)
 
 
-def _orientation(rect: Rect, state: State) -> Button:
+def _orientation(state: State) -> Button:
     """Back to the car if the map was moved away; otherwise turns the map."""
-    if state.of(Viewpoint).panned is not None:
-        words, icon, message = say("Back to the car"), Icon.GPS, Follow(state.of(Viewpoint).north_up)
-    elif state.of(Viewpoint).north_up:
+    view = state.of(Viewpoint)
+    if view.panned is not None:
+        words, icon, message = say("Back to the car"), Icon.GPS, Follow(view.north_up)
+    elif view.north_up:
         words, icon, message = say("North up"), Icon.COMPASS, Follow(False)
     else:
         words, icon, message = say("Heading up"), Icon.NAVIGATION, Follow(True)
-    return Button(
-        rect=rect, key="map.orientation", description=words, icon=icon, look=Look.FLOATING, on_tap=message
-    )
+    return Button(key="map.orientation", description=words, icon=icon, look=Look.FLOATING, on_tap=message)
 
 
 def map_view(
@@ -260,10 +245,10 @@ def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) ->
         ("end", say("The route ends here"), Icon.GOAL, goal(state)),
     ]
     told = enumerate(incidents(state, besides_jam=known[0][3] is not None))
-    for at, (kind, spot) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
+    for number, (kind, spot) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
         words, icon = INCIDENTS[kind]
         named = say("{name}: {value}", name=words, value=road_name(spot.road))
-        known.append((f"incident.{at}", named, icon, spot))
+        known.append((f"incident.{number}", named, icon, spot))
     here = ego(state)
     car = None if here is None else box_of(camera, rect, here[:2], 48)
     found: list[Badge] = []
@@ -307,70 +292,49 @@ def next_turn(state: State) -> tuple[Turn, float] | None:
     return next(iter(turns_ahead(state)), None)
 
 
-def _turn_plate(rect: Rect, ahead: tuple[Turn, float], state: State) -> Widget:
+def _turn_plate(ahead: tuple[Turn, float], state: State) -> Block:
     turn, away_m = ahead
-    picture, _, far, _, words = row(rect.inset(14, 0), 44, 14, 116, 4, REST)
-    return Card(
-        rect=rect,
-        look="plate",
-        children=(
-            Glyph(rect=picture.middle(44, 44), icon=turn.icon, size=42, tone="accent"),
-            Label(
-                rect=far.inset(0, 8),
-                key="map.next_turn.distance",
-                text=distance(state.signals, away_m),
-                description=say("Distance to the next turn"),
-                style=Type.TITLE,
-            ),
-            Label(
-                rect=words.inset(0, 8),
-                key="map.next_turn",
-                text=say("{name}: {value}", name=turn.words, value=turn.street),
-                description=say("Next turn"),
-                style=Type.LABEL,
-                lines=2,
-            ),
-        ),
+    far = Label(
+        key="map.next_turn.distance",
+        text=distance(state.signals, away_m),
+        description=say("Distance to the next turn"),
+        style=Type.TITLE,
     )
+    words = Label(
+        key="map.next_turn",
+        text=say("{name}: {value}", name=turn.words, value=turn.street),
+        description=say("Next turn"),
+        style=Type.LABEL,
+        lines=2,
+    )
+    picture = at(lambda box: box.middle(44, 44), Glyph(icon=turn.icon, size=42, tone="accent"))
+    texts = line((116, far), 4, words)
+    parts = line((44, picture), 14, at(lambda box: box.inset(0, 8), texts))
+    return framed(parts, (14, 0), look="plate")
 
 
-def street_plate(rect: Rect, state: State) -> Widget:
+def street_plate(state: State) -> Block:
     """The present road, over a map."""
-    picture, _, words, _ = row(rect, 44, 12, REST, 20)
     tunnel = state.outside is not None and state.outside.driving.road.in_tunnel
-    return Card(
-        rect=rect,
-        look="plate",
-        children=(
-            Glyph(
-                rect=picture.right_part(28).middle(28, 28),
-                icon=Icon.TUNNEL if tunnel else Icon.MAP,
-                size=26,
-                tone="accent",
-                key="map.tunnel" if tunnel else "",
-                description=say("In a tunnel") if tunnel else "",
-            ),
-            Label(
-                rect=words,
-                key="map.street",
-                text=street(state),
-                description=say("Current road"),
-                style=Type.STRONG,
-            ),
-        ),
+    picture = Glyph(
+        icon=Icon.TUNNEL if tunnel else Icon.MAP,
+        size=26,
+        tone="accent",
+        key="map.tunnel" if tunnel else "",
+        description=say("In a tunnel") if tunnel else "",
     )
+    words = Label(key="map.street", text=street(state), description=say("Current road"), style=Type.STRONG)
+    shown = at(lambda box: box.right_part(28).middle(28, 28), picture)
+    return framed(line((44, shown), 12, words, 20), look="plate")
 
 
-def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
-    wanted, _, tabs, _, listed, _, way = column(rect, 64, 12, 56, 12, REST, GAP, 184)
+def _panel(state: State) -> Block:
     found = matches(state)
     typed = bool(state.typed.get("map.search")) or state.focus == "map.search"
     shown = state.picked["map.list"]
-    names = (
-        found if typed else state.of(Navigation).recents if shown == "recent" else state.of(Navigation).favourites
-    )
-    lists = choices(
-        tabs,
+    known = state.of(Navigation)
+    names = found if typed else known.recents if shown == "recent" else known.favourites
+    tabs = choices(
         "map.list",
         [
             ("saved", say("Saved"), Icon.STAR, shown == "saved", Pick("map.list", "saved", rewinds="map.")),
@@ -378,49 +342,39 @@ def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
             ("explore", say("Near"), Icon.PLACE, False, Show("explore", "all")),
         ],
     )
-    empty = Label(
-        rect=listed.top(60),
-        key="map.places.empty",
-        text=say("No street or place with this name") if typed else say("No destinations yet"),
-        tone="muted",
-        style=Type.LABEL,
-        align="centre",
+    results = at(lambda box: box.moved(4, 14).top(28), heading(say("Results"), "map.results"))
+    nothing = say("No street or place with this name") if typed else say("No destinations yet")
+    places = rows(
+        "map.places",
+        say("Destinations"),
+        state,
+        names,
+        lambda index, name: destination(f"map.place.{index}", name, state),
+        height=60,
+        gap=6,
     )
-    return (
-        search(
-            wanted,
-            "map.search",
-            say("Search for a place or street"),
-            say("Where to?"),
-            state,
-            _first(found if typed else ()),
-        ),
-        heading(tabs.moved(4, 14).top(28), say("Results"), "map.results") if typed else lists,
-        rows(
-            listed,
-            "map.places",
-            say("Destinations"),
-            state,
-            len(names),
-            lambda index, cell: destination(cell, f"map.place.{index}", names[index], state),
-            height=60,
-            gap=6,
-        )
-        if names
-        else empty,
-        _way(way, state),
+    field = search(
+        "map.search",
+        say("Search for a place or street"),
+        say("Where to?"),
+        state,
+        Guide(found[0]) if typed and found else None,
+    )
+    return stack(
+        (64, field),
+        12,
+        (56, results if typed else tabs),
+        12,
+        (REST, places if names else note("map.places.empty", nothing)),
+        GAP,
+        (184, _way(state)),
     )
 
 
-def _first(found: tuple[str, ...]) -> Message | None:
-    return Guide(found[0]) if found else None
-
-
-def destination(rect: Rect, key: str, name: str, state: State) -> Row:
+def destination(key: str, name: str, state: State) -> Row:
     """A line of a list of destinations."""
     place = state.of(Gazetteer).find(name)
     return Row(
-        rect=rect,
         key=key,
         text=name,
         detail=place.street if place else say("Street"),
@@ -450,47 +404,38 @@ def matches(state: State) -> tuple[str, ...]:
     return (*places, *streets)[:RESULTS]
 
 
-def _way(rect: Rect, state: State) -> Widget:
-    head, _, when, _, acts = column(rect.inset(20, 14), 28, 2, 50, REST, 56)
-    faster, details = acts.columns(2, 12)
+def _way(state: State) -> Block:
     goal = state.of(Navigation).destination
-    return Card(
-        rect=rect,
-        children=(
-            heading(head, say("To {place}", place=goal) if goal else say("Arrival"), "map.goal"),
-            *arrival(when, "map", state),
-            Button(rect=faster, key="map.faster_route", text=say("Faster"), icon=Icon.ROUTE, on_tap=Guide("")),
-            Button(rect=details, key="map.route", text=say("Route"), icon=Icon.TURNS, on_tap=Show("route")),
-        ),
+    faster = Button(key="map.faster_route", text=say("Faster"), icon=Icon.ROUTE, on_tap=Guide(""))
+    details = Button(key="map.route", text=say("Route"), icon=Icon.TURNS, on_tap=Show("route"))
+    return card(
+        heading(say("To {place}", place=goal) if goal else say("Arrival"), "map.goal"),
+        2,
+        (50, arrival("map", state)),
+        REST,
+        (56, grid(2, 12, faster, details)),
+        padding=(20, 14),
     )
 
 
-def arrival(rect: Rect, key: str, state: State) -> tuple[Widget, ...]:
+def arrival(key: str, state: State) -> Block:
     """Arrival time, distance and delay."""
     ahead = None if state.outside is None else state.outside.driving.ahead
-    at, left, late = "--:--", "", ""
+    time, left, late = "--:--", "", ""
     if state.outside is not None and ahead is not None:
-        at = state.clock_at(state.outside.local_time + timedelta(seconds=ahead.eta_s))
+        time = state.clock_at(state.outside.local_time + timedelta(seconds=ahead.eta_s))
         left = distance(state.signals, ahead.route_left_m)
         late = say("{minutes} min delay", minutes=ahead.delay_min) if ahead.delay_min else say("No delay")
-    cells = rect.columns(2, 12)
-    return (
-        Label(rect=cells[0], key=f"{key}.arrival", text=at, description=say("Arrival time"), style=Type.HEADLINE),
-        Label(
-            rect=cells[1].top(26),
-            key=f"{key}.route_left",
-            text=left,
-            description=say("Distance left"),
-            style=Type.LABEL,
-            align="right",
-        ),
-        Label(
-            rect=cells[1].bottom_part(24),
-            key=f"{key}.delay",
-            text=late,
-            description=say("Traffic delay"),
-            style=Type.CAPTION,
-            tone="muted",
-            align="right",
-        ),
+    far = Label(
+        key=f"{key}.route_left", text=left, description=say("Distance left"), style=Type.LABEL, align="right"
     )
+    delay = Label(
+        key=f"{key}.delay",
+        text=late,
+        description=say("Traffic delay"),
+        style=Type.CAPTION,
+        tone="muted",
+        align="right",
+    )
+    when = Label(key=f"{key}.arrival", text=time, description=say("Arrival time"), style=Type.HEADLINE)
+    return grid(2, 12, when, stack((26, far), REST, (24, delay)))

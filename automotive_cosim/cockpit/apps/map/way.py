@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.map.commands import Guide, Take
 from automotive_cosim.cockpit.apps.map.screens import arrival, away, destination, panel, sight, turns_ahead
-from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, NO_GOAL, Navigation
+from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, NO_GOAL, Navigation, Turn
 from automotive_cosim.cockpit.apps.store import Installed
-from automotive_cosim.cockpit.commands import Put, Set
-from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.cards import SMALL, choice, choices, heading, note, rows
+from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.flow import BlockItem, BlockPart, at, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Back, Pick, Show
-from automotive_cosim.cockpit.parts import choices, distance, heading, note, rows
 from automotive_cosim.cockpit.places import SORTS, Destination, Gazetteer, PlaceKind
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Row, Tile, Widget
-from automotive_cosim.contracts.text import say, say_in
+from automotive_cosim.cockpit.values import distance
+from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.contracts import RouteOption
+from automotive_cosim.contracts.text import say
 
 _EVERYDAY = tuple(kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK))
 
@@ -27,14 +30,18 @@ def explore(state: State) -> tuple[Widget, ...]:
     """Kinds of places, and those of the chosen kind, the nearest first."""
     chosen = state.picked["explore"]
     if chosen == "all":
-        return *_head(state, say("Places nearby"), Icon.PLACE, "explore"), _kinds(state), sight(state)
+        return _page(state, say("Places nearby"), Icon.PLACE, "explore", 16, (REST, _kinds(state)))
     kind = PlaceKind(chosen)
     found = nearest(state, state.of(Gazetteer).of(kind))
-    return (
-        *_head(state, SORTS[kind].title, SORTS[kind].icon, "explore"),
-        _places(state, found) if found else note(panel(state).below(72), "explore.empty", say("None found nearby")),
-        sight(state),
+    places = rows(
+        "explore.places",
+        say("Places"),
+        state,
+        found,
+        lambda index, each: destination(f"explore.place.{index}", each.name, state),
     )
+    listed = places if found else note("explore.empty", say("None found nearby"))
+    return _page(state, SORTS[kind].title, SORTS[kind].icon, "explore", 16, (REST, listed))
 
 
 def nearest(state: State, places: Sequence[Destination]) -> tuple[Destination, ...]:
@@ -56,220 +63,150 @@ def along(state: State, places: Sequence[Destination]) -> tuple[Destination, ...
     return tuple(sorted(places, key=lambda place: (beside[place], place.name)))
 
 
-def _head(state: State, text: str, icon: Icon, key: str) -> tuple[Widget, ...]:
-    back, _, picture, _, words = row(panel(state).top(56), 56, 16, 32, 8, REST)
-    return (
-        Button(rect=back, key=f"{key}.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()),
-        Glyph(rect=picture.middle(32, 32), icon=icon, size=28, tone="accent"),
-        Label(rect=words, key=f"{key}.title", text=text, style=Type.TITLE),
-    )
+def _page(state: State, text: str, icon: Icon, key: str, *items: BlockItem) -> tuple[Widget, ...]:
+    """A title with a way back, what is given below it, and the map."""
+    picture = at(lambda box: box.middle(32, 32), Glyph(icon=icon, size=28, tone="accent"))
+    back = Button(key=f"{key}.back", description=say("Back"), icon=Icon.BACK, on_tap=Back())
+    head = line((56, back), 16, (32, picture), 8, Label(key=f"{key}.title", text=text, style=Type.TITLE))
+    return *fill(panel(state), stack((56, head), *items)), sight(state)
 
 
-def _kinds(state: State) -> Widget:
-    return rows(
-        panel(state).below(72),
-        "explore.kinds",
-        say("Place types"),
-        state,
-        len(_EVERYDAY),
-        lambda index, cell: Button(
-            rect=cell,
-            key=f"explore.kind.{_EVERYDAY[index]}",
-            text=SORTS[_EVERYDAY[index]].title,
-            icon=SORTS[_EVERYDAY[index]].icon,
+def _kinds(state: State) -> BlockPart:
+    def entry(index: int, kind: PlaceKind) -> Button:
+        return Button(
+            key=f"explore.kind.{kind}",
+            text=SORTS[kind].title,
+            icon=SORTS[kind].icon,
             icon_size=30,
             stacked=True,
-            on_tap=Show("explore", _EVERYDAY[index]),
-        ),
-        columns=2,
-        height=84,
-        gap=10,
-    )
+            on_tap=Show("explore", kind),
+        )
 
-
-def _places(state: State, found: tuple[Destination, ...]) -> Widget:
-    return rows(
-        panel(state).below(72),
-        "explore.places",
-        say("Places"),
-        state,
-        len(found),
-        lambda index, cell: destination(cell, f"explore.place.{index}", found[index].name, state),
-        height=64,
-    )
+    return rows("explore.kinds", say("Place types"), state, _EVERYDAY, entry, columns=2, height=84, gap=10)
 
 
 def place(state: State) -> tuple[Widget, ...]:
     """One destination, before departure."""
     name = state.picked.get("place") or next(iter(state.of(Navigation).favourites), "")
     known = state.of(Gazetteer).find(name)
-    _, card, _, buttons = column(panel(state), 72, 200, GAP, REST)
-    inner = card.inset(20, 16)
-    facts = (
-        (known.street if known else say("Street in this area"), "place.street", Type.STRONG, "text"),
-        (known.detail if known else say("The nearest point of the street"), "place.detail", Type.LABEL, "muted"),
-        (
-            say("{distance} away", distance=away(state, name)) if known else "",
-            "place.distance",
-            Type.LABEL,
-            "muted",
-        ),
+    street = known.street if known else say("Street in this area")
+    detail = known.detail if known else say("The nearest point of the street")
+    far = say("{distance} away", distance=away(state, name)) if known else ""
+    facts = grid(
+        1,
+        4,
+        Label(key="place.street", text=street, style=Type.STRONG, lines=2),
+        Label(key="place.detail", text=detail, style=Type.LABEL, tone="muted", lines=2),
+        Label(key="place.distance", text=far, style=Type.LABEL, tone="muted", lines=2),
     )
-    lines = tuple(
-        Label(rect=line, key=key, text=text, style=style, tone="text" if tone == "text" else "muted", lines=2)
-        for line, (text, key, style, tone) in zip(inner.rows(3, 4), facts, strict=True)
-    )
-    return (
-        *_head(state, name, known.icon if known else Icon.ROUTE, "place"),
-        Card(rect=card, children=lines),
-        *_place_buttons(buttons, name, known, state),
-        sight(state),
+    icon = known.icon if known else Icon.ROUTE
+    return _page(
+        state, name, icon, "place", 16, (200, framed(facts, SMALL)), GAP, *_place_buttons(name, known, state), REST
     )
 
 
-def _place_buttons(rect: Rect, name: str, known: Destination | None, state: State) -> tuple[Widget, ...]:
+def _place_buttons(name: str, known: Destination | None, state: State) -> Iterator[BlockItem]:
     navigation = state.of(Navigation)
     saved = name in navigation.favourites
     goal = navigation.destination
-    cells = column(rect, 56, 8, 56, 8, 56, 8, 56)[::2]
     there = say("Already navigating there") if goal == name else ""
-    extra: tuple[Widget, ...] = ()
-    if known is not None and known.kind is PlaceKind.PARKING and "parking" in state.of(Installed).apps:
-        extra = (
-            Button(
-                rect=cells[3],
-                key="place.pay",
-                text=say("Pay for parking"),
-                icon=Icon.TICKET,
-                on_tap=Show("parking"),
-            ),
-        )
-    return (
-        Button(
-            rect=cells[0],
-            key="place.start",
-            text=say("Navigating there") if there else say("Start guidance"),
-            icon=Icon.ROUTE,
-            look=Look.ACCENT,
-            on_tap=Guide(name),
-            disabled=there,
-        ),
-        Button(
-            rect=cells[1],
-            key="place.stop",
-            text=say("Add as a stop"),
-            icon=Icon.PLACE,
-            on_tap=Guide(name, goal),
-            disabled=there or ("" if goal else NO_GOAL),
-        ),
-        Button(
-            rect=cells[2],
-            key="place.save",
-            text=say("Remove from saved") if saved else say("Save"),
-            icon=Icon.STAR if saved else Icon.STAR_OUTLINE,
-            on_tap=Put(
-                navigation.with_favourite(name, not saved),
-                say("{name} is no longer saved", name=name) if saved else say("{name} is now saved", name=name),
-            ),
-        ),
-        *extra,
+    start = Button(
+        key="place.start",
+        text=say("Navigating there") if there else say("Start guidance"),
+        icon=Icon.ROUTE,
+        look=Look.ACCENT,
+        on_tap=Guide(name),
+        disabled=there,
     )
+    stop = Button(
+        key="place.stop",
+        text=say("Add as a stop"),
+        icon=Icon.PLACE,
+        on_tap=Guide(name, goal),
+        disabled=there or ("" if goal else NO_GOAL),
+    )
+    save = Button(
+        key="place.save",
+        text=say("Remove from saved") if saved else say("Save"),
+        icon=Icon.STAR if saved else Icon.STAR_OUTLINE,
+        on_tap=Put(
+            navigation.with_favourite(name, not saved),
+            say("{name} is no longer saved", name=name) if saved else say("{name} is now saved", name=name),
+        ),
+    )
+    yield from ((56, start), 8, (56, stop), 8, (56, save))
+    if known is not None and known.kind is PlaceKind.PARKING and "parking" in state.of(Installed).apps:
+        pay = Button(key="place.pay", text=say("Pay for parking"), icon=Icon.TICKET, on_tap=Show("parking"))
+        yield from (8, (56, pay))
 
 
 def route(state: State) -> tuple[Widget, ...]:
     """The route ahead: its turns, alternatives, and what to avoid."""
     shown = state.picked["route"]
     goal = state.of(Navigation).destination or say("Route")
-    _, summary, _, tabs, _, body = column(panel(state), 64, 72, 12, 56, 12, REST)
-    pages = {"turns": _turn_list, "ways": _ways, "options": _options}
-    return (
-        *_head(state, goal, Icon.TURNS, "route"),
-        Card(rect=summary, children=arrival(summary.inset(20, 10), "route", state)),
-        choices(
-            tabs,
-            "route.tab",
-            [
-                (name, text, None, shown == name, Pick("route", name))
-                for name, text in (
-                    ("turns", say("Directions")),
-                    ("ways", say("Routes")),
-                    ("options", say("Options")),
-                )
-            ],
-        ),
-        *pages[shown](body, state),
-        sight(state),
-    )
+    parts = (("turns", say("Directions")), ("ways", say("Routes")), ("options", say("Options")))
+    tabs = choices("route.tab", ((name, text, None, shown == name, Pick("route", name)) for name, text in parts))
+    body = {"turns": _turn_list, "ways": _ways, "options": _options}[shown](state)
+    summary = framed(arrival("route", state), (20, 10))
+    return _page(state, goal, Icon.TURNS, "route", 8, (72, summary), 12, (56, tabs), 12, (REST, body))
 
 
-def _turn_list(rect: Rect, state: State) -> tuple[Widget, ...]:
+def _turn_list(state: State) -> BlockPart:
+    def entry(index: int, each: tuple[Turn, float]) -> Row:
+        turn, away_m = each
+        return Row(
+            key=f"route.turn.{index}",
+            text=turn.words,
+            detail=turn.street,
+            trail=distance(state.signals, away_m),
+            icon=turn.icon,
+        )
+
     ahead = turns_ahead(state)
-    if not ahead:
-        return (note(rect, "route.turns.empty", say("The route is not known yet")),)
-    return (
-        rows(
-            rect,
-            "route.turns",
-            say("Directions"),
-            state,
-            len(ahead),
-            lambda index, cell: Row(
-                rect=cell,
-                key=f"route.turn.{index}",
-                text=ahead[index][0].words,
-                detail=ahead[index][0].street,
-                trail=distance(state.signals, ahead[index][1]),
-                icon=ahead[index][0].icon,
-            ),
-            height=60,
-            gap=6,
-        ),
-    )
+    turns = rows("route.turns", say("Directions"), state, ahead, entry, height=60, gap=6)
+    return turns if ahead else note("route.turns.empty", say("The route is not known yet"))
 
 
-def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
+def _ways(state: State) -> BlockPart:
     """The present route, alternatives, and places to charge on the way."""
     ahead = None if state.outside is None else state.outside.driving.ahead
     others = () if ahead is None else ahead.alternatives
     chargers = along(state, state.of(Gazetteer).of(PlaceKind.CHARGING))
-    lines: list[tuple[str, str, str, Icon, Take | Guide | Show]] = [
-        (
-            say("Route {number}", number=at + 2),
-            say(
-                "{first}, {second}",
-                first=_more(other.eta_s, 0 if ahead is None else ahead.eta_s),
-                second=say("{minutes} min delay", minutes=f"{other.delay_s / 60:.0f}"),
-            ),
-            distance(state.signals, other.length_m),
-            Icon.ROUTE,
-            Take(other.edges),
+
+    def other(number: int, each: RouteOption) -> Row:
+        longer = _more(each.eta_s, 0 if ahead is None else ahead.eta_s)
+        delay = say("{minutes} min delay", minutes=f"{each.delay_s / 60:.0f}")
+        return Row(
+            text=say("Route {number}", number=number),
+            detail=say("{first}, {second}", first=longer, second=delay),
+            trail=distance(state.signals, each.length_m),
+            icon=Icon.ROUTE,
+            on_tap=Take(each.edges),
         )
-        for at, other in enumerate(others)
-    ]
-    lines.append((say("Look for a faster route"), say("In current traffic"), "", Icon.ROUTE, Guide("")))
+
+    lines = [other(number, each) for number, each in enumerate(others, 2)]
+    faster = Row(
+        text=say("Look for a faster route"), detail=say("In current traffic"), icon=Icon.ROUTE, on_tap=Guide("")
+    )
+    lines.append(faster)
     lines += [
-        (charger.name, charger.detail, away(state, charger.name), Icon.CHARGING, Show("place", charger.name))
+        Row(
+            text=charger.name,
+            detail=charger.detail,
+            trail=away(state, charger.name),
+            icon=Icon.CHARGING,
+            on_tap=Show("place", charger.name),
+        )
         for charger in chargers
     ]
-    return (
-        rows(
-            rect,
-            "route.ways",
-            say("Other routes and charging stops"),
-            state,
-            len(lines),
-            lambda index, cell: Row(
-                rect=cell,
-                key=f"route.way.{index}",
-                text=lines[index][0],
-                detail=lines[index][1],
-                trail=lines[index][2],
-                icon=lines[index][3],
-                on_tap=lines[index][4],
-            ),
-            height=60,
-            gap=6,
-        ),
+    return rows(
+        "route.ways",
+        say("Other routes and charging stops"),
+        state,
+        lines,
+        lambda index, each: replace(each, key=f"route.way.{index}"),
+        height=60,
+        gap=6,
     )
 
 
@@ -282,49 +219,31 @@ def _more(eta_s: float, now_s: float) -> str:
     return say("{minutes} min shorter", minutes=-minutes)
 
 
-def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
+def _options(state: State) -> BlockPart:
     navigation = state.of(Navigation)
-    avoid, _, tiles, _, spoken, _, voices, _, stop = column(rect, 28, 4, 128, 8, 28, 4, 56, 12, 56)
-    cells = [cell for line in tiles.rows(2, 8) for cell in line.columns(2, 8)]
-    guidance = state.signals[VOICE.GUIDANCE]
     onward = navigation.onward
-    return (
-        heading(avoid, say("Avoid")),
-        *(
-            Tile(
-                rect=cell,
-                key=f"route.avoid.{name}",
-                text=text,
-                icon=icon,
-                checked=name in navigation.avoid,
-                on_tap=Put(
-                    navigation.with_avoided(name, name not in navigation.avoid),
-                    say("{roads} are no longer avoided", roads=text)
-                    if name in navigation.avoid
-                    else say("{roads} are avoided", roads=text),
-                ),
-            )
-            for cell, (name, (text, icon)) in zip(cells, AVOIDABLE.items(), strict=True)
-        ),
-        heading(spoken, say("Voice guidance")),
-        choices(
-            voices,
-            "route.voice",
-            [
-                (key, text, None, guidance == value, Set(VOICE.GUIDANCE, value))
-                for key, text, value in (
-                    ("all", say_in("guidance", "All"), "UNMUTED"),
-                    ("alerts", say("Alerts"), "ALERT_ONLY"),
-                    ("off", say("Off"), "MUTED"),
-                )
-            ],
-        ),
-        Button(
-            rect=stop,
-            key="route.onward",
-            text=say("Skip the stop: {place}", place=onward) if onward else say("Remove the stop"),
-            icon=Icon.GOAL,
-            on_tap=Guide(onward),
-            disabled="" if onward else say("There is no stop on the route"),
-        ),
+
+    def avoided(name: str, text: str, icon: Icon) -> Tile:
+        on = name in navigation.avoid
+        said = say("{roads} are no longer avoided", roads=text) if on else say("{roads} are avoided", roads=text)
+        put = Put(navigation.with_avoided(name, not on), said)
+        return Tile(key=f"route.avoid.{name}", text=text, icon=icon, checked=on, on_tap=put)
+
+    stop = Button(
+        key="route.onward",
+        text=say("Skip the stop: {place}", place=onward) if onward else say("Remove the stop"),
+        icon=Icon.GOAL,
+        on_tap=Guide(onward),
+        disabled="" if onward else say("There is no stop on the route"),
+    )
+    return stack(
+        heading(say("Avoid")),
+        4,
+        (128, grid(2, 8, *(avoided(name, text, icon) for name, (text, icon) in AVOIDABLE.items()))),
+        8,
+        heading(say("Voice guidance")),
+        4,
+        (56, choice(VOICE.GUIDANCE, state)),
+        12,
+        (56, stop),
     )

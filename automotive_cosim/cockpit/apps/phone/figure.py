@@ -8,15 +8,16 @@ from dataclasses import dataclass, replace
 from datetime import timedelta
 
 from automotive_cosim.cockpit.apps.phone.commands import SendReply
-from automotive_cosim.cockpit.apps.phone.handset import handset, handset_and_page
+from automotive_cosim.cockpit.apps.phone.handset import beside_handset
 from automotive_cosim.cockpit.apps.phone.state import Directory, FigureDraft, Phone
+from automotive_cosim.cockpit.cards import choices, heading
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.flow import framed, grid, line, stack
+from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Back
-from automotive_cosim.cockpit.parts import choices, heading
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Widget
+from automotive_cosim.cockpit.widgets import Button, Label, Look, Widget
 from automotive_cosim.contracts.text import Quantity, Text, say
 
 DAY_MIN = 24 * 60
@@ -80,58 +81,36 @@ def figure(state: State) -> tuple[Widget, ...]:
         value = round(min(sentence.most, max(0.0, draft.value + by)), 1)
         return put(replace(draft, value=value))
 
-    _, page = handset_and_page(state)
-    bar, _, label, _, sentences, _, card, _, sizes_row, _, send = column(
-        page, 64, GAP, 28, 8, 56, 16, 64, 12, 72, 16, 72
-    )
-    back, _, name = row(bar, 64, 16, REST)
-    steps = sizes_row.columns(4, 12)
     words = sentence.said(draft.value)
-    sizes = (("less", -sentence.coarse), ("down", -sentence.fine), ("up", sentence.fine), ("more", sentence.coarse))
-    return (
-        handset(state),
-        Button(rect=back, key="figure.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()),
-        Label(rect=name, key="figure.who", text=who, style=Type.TITLE),
-        heading(label, say("Message")),
-        choices(
-            sentences,
-            "figure.say",
-            [
-                (
-                    key,
-                    each.label,
-                    None,
-                    key == draft.sentence,
-                    put(_begun(key, state)),
-                )
-                for key, each in SENTENCES.items()
-            ],
-        ),
-        Card(
-            rect=card,
-            children=(
-                Label(
-                    rect=card.inset(20, 8),
-                    key="figure.words",
-                    text=words,
-                    description=say("Message"),
-                    style=Type.TITLE,
-                ),
-            ),
-        ),
-        *(
-            Button(rect=cell, key=f"figure.{key}", text=_signed(by, sentence), on_tap=moved(by))
-            for cell, (key, by) in zip(steps, sizes, strict=True)
-        ),
-        Button(
-            rect=send,
-            key="figure.send",
-            text=say("Send"),
-            icon=Icon.REPLY,
-            look=Look.ACCENT,
-            on_tap=SendReply(who, words),
+    steps = (("less", -sentence.coarse), ("down", -sentence.fine), ("up", sentence.fine), ("more", sentence.coarse))
+    sizes = (Button(key=f"figure.{key}", text=_signed(by, sentence), on_tap=moved(by)) for key, by in steps)
+    back = Button(key="figure.back", description=say("Back"), icon=Icon.BACK, on_tap=Back())
+    said = choices(
+        "figure.say",
+        (
+            (key, each.label, None, key == draft.sentence, put(_begun(key, state)))
+            for key, each in SENTENCES.items()
         ),
     )
+    send = Button(
+        key="figure.send", text=say("Send"), icon=Icon.REPLY, look=Look.ACCENT, on_tap=SendReply(who, words)
+    )
+    told = Label(key="figure.words", text=words, description=say("Message"), style=Type.TITLE)
+    page = stack(
+        (64, line((64, back), 16, Label(key="figure.who", text=who, style=Type.TITLE))),
+        GAP,
+        heading(say("Message")),
+        8,
+        (56, said),
+        16,
+        (64, framed(told, (20, 8))),
+        12,
+        (72, grid(4, 12, *sizes)),
+        16,
+        (72, send),
+        REST,
+    )
+    return beside_handset(state, page)
 
 
 def _begun(key: str, state: State) -> FigureDraft:

@@ -7,17 +7,19 @@ from dataclasses import replace
 from automotive_cosim.cockpit.apps.phone.commands import CallEmergency
 from automotive_cosim.cockpit.apps.phone.state import Phone
 from automotive_cosim.cockpit.apps.safety.commands import AskPullOver, AskSlowDown, WarnDriver
-from automotive_cosim.cockpit.apps.safety.state import KINDS, AlertDraft, Alerts
+from automotive_cosim.cockpit.apps.safety.state import KINDS, AlertDraft, AlertRecord, Alerts
+from automotive_cosim.cockpit.cards import HELD_STEPS, SMALL, choices, content, heading, rows, switch
 from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.flow import Block, BlockItem, card, fill, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, panes, row
+from automotive_cosim.cockpit.layout import REST, panes
 from automotive_cosim.cockpit.messages import Back, Show
-from automotive_cosim.cockpit.parts import HELD_STEPS, choices, content, heading, rows, speed, speed_unit, switch
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS, MOTION
-from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Glyph, Label, Look, Row, Widget
-from automotive_cosim.contracts import Severity
+from automotive_cosim.cockpit.values import speed, speed_unit
+from automotive_cosim.cockpit.widgets import Button, Choice, Glyph, Label, Look, Row, Widget
+from automotive_cosim.contracts import AlertKind, Severity
 from automotive_cosim.contracts.text import say
 
 SEVERITIES: dict[Severity, tuple[str, Icon]] = {
@@ -37,7 +39,7 @@ SLOWEST_KMH, FASTEST_KMH, STEP_KMH = 10.0, 180.0, 10.0
 def safety(state: State) -> tuple[Widget, ...]:
     """The safety centre."""
     left, middle, right = _three(content(state))
-    return _kinds(left, state), _draft(middle, state), *_help(right, state)
+    return *fill(left, _kinds(state)), *fill(middle, _draft(state)), *fill(right, _help(state))
 
 
 def _three(rect: Rect) -> tuple[Rect, Rect, Rect]:
@@ -54,247 +56,161 @@ def _put(draft: AlertDraft) -> Put:
     return Put(draft, say("The alert is not given yet"))
 
 
-def _kinds(rect: Rect, state: State) -> Widget:
-    head, _, body = column(rect.inset(20, 16), 30, 6, REST)
-    kinds = tuple(KINDS)
+def _kinds(state: State) -> Block:
+    draft = state.of(AlertDraft)
 
-    def cell(index: int, box: Rect) -> Widget:
-        kind = kinds[index]
+    def entry(index: int, kind: AlertKind) -> Choice:
         name, icon = KINDS[kind]
         return Choice(
-            rect=box,
             key=f"safety.kind.{kind}",
             text=name,
             icon=icon,
-            selected=state.of(AlertDraft).kind is kind,
+            selected=draft.kind is kind,
             look="boxed",
             stacked=True,
-            on_tap=_put(replace(state.of(AlertDraft), kind=kind)),
+            on_tap=_put(replace(draft, kind=kind)),
         )
 
-    return Card(
-        rect=rect,
-        children=(
-            heading(head, say("Warn the driver about")),
-            rows(
-                body,
-                "safety.kinds",
-                say("Alert types"),
-                state,
-                len(kinds),
-                cell,
-                columns=4,
-                height=86,
-                gap=10,
-            ),
-        ),
-    )
+    every = rows("safety.kinds", say("Alert types"), state, tuple(KINDS), entry, columns=4, height=86, gap=10)
+    return card((30, heading(say("Warn the driver about"))), 6, every, padding=SMALL)
 
 
-def _draft(rect: Rect, state: State) -> Widget:
-    head, _, chosen, _, severities, _, advice, _, warn = column(
-        rect.inset(20, 16), 30, 4, 44, 14, 92, 20, 180, REST, 88
-    )
+def _draft(state: State) -> Block:
     draft = state.of(AlertDraft)
     title = say("Choose what to warn about") if draft.kind is None else KINDS[draft.kind][0]
-    return Card(
-        rect=rect,
-        children=(
-            heading(head, say("Alert")),
-            Label(
-                rect=chosen,
-                key="safety.draft",
-                text=title,
-                description=say("Selected alert"),
-                style=Type.TITLE,
-            ),
-            choices(
-                severities,
-                "safety.severity",
-                [
-                    (
-                        str(severity),
-                        name,
-                        icon,
-                        draft.severity is severity,
-                        _put(replace(draft, severity=severity)),
-                    )
-                    for severity, (name, icon) in SEVERITIES.items()
-                ],
-                stacked=True,
-            ),
-            *_advice(advice, state),
-            Button(
-                rect=warn,
-                key="safety.warn",
-                text=say("Warn driver"),
-                icon=Icon.WARN,
-                icon_size=34,
-                style=Type.TITLE,
-                look=Look.ACCENT,
-                on_tap=WarnDriver(),
-                disabled=say("Choose what to warn about first") if draft.kind is None else "",
-            ),
-        ),
+    severities = [
+        (str(severity), name, icon, draft.severity is severity, _put(replace(draft, severity=severity)))
+        for severity, (name, icon) in SEVERITIES.items()
+    ]
+    warn = Button(
+        key="safety.warn",
+        text=say("Warn driver"),
+        icon=Icon.WARN,
+        icon_size=34,
+        style=Type.TITLE,
+        look=Look.ACCENT,
+        on_tap=WarnDriver(),
+        disabled=say("Choose what to warn about first") if draft.kind is None else "",
+    )
+    return card(
+        (30, heading(say("Alert"))),
+        4,
+        (44, Label(key="safety.draft", text=title, description=say("Selected alert"), style=Type.TITLE)),
+        14,
+        (92, choices("safety.severity", severities, stacked=True)),
+        20,
+        (180, _advice(state)),
+        REST,
+        (88, warn),
+        padding=SMALL,
     )
 
 
-def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
+def _advice(state: State) -> Block:
     """Advised speed: the posted limit, or a number."""
     signals, draft = state.signals, state.of(AlertDraft)
     advised = draft.speed_kmh
     start = signals[ADAS.LIMIT_SIGN] or signals[MOTION.SPEED]
     start = min(FASTEST_KMH, max(SLOWEST_KMH, start // STEP_KMH * STEP_KMH))
 
-    def moved(steps: int) -> AlertDraft:
-        new = start if advised is None else min(FASTEST_KMH, max(SLOWEST_KMH, advised + steps * STEP_KMH))
-        return replace(draft, speed_kmh=new)
+    def step(key: str, words: str, icon: Icon, by: int, end_kmh: float, why: str) -> Button:
+        def moved(steps: int) -> Put:
+            new = start if advised is None else min(FASTEST_KMH, max(SLOWEST_KMH, advised + steps * STEP_KMH))
+            return _put(replace(draft, speed_kmh=new))
 
+        return Button(
+            key=f"safety.speed.{key}",
+            description=words,
+            icon=icon,
+            on_tap=moved(by),
+            on_hold=moved(by * HELD_STEPS),
+            disabled=why if advised == end_kmh else "",
+        )
+
+    name = say("Advised speed")
+    less, more = say("{name} lower", name=name), say("{name} higher", name=name)
     shown = say("Posted limit") if advised is None else f"{speed(signals, advised)} {speed_unit(signals)}"
-    head, _, line, _, posted = column(rect, 28, 12, 64, 12, 52)
-    minus, number, plus = row(line, 64, REST, 64)
-    return (
-        heading(head, say("Advised speed")),
-        Button(
-            rect=minus,
-            key="safety.speed.decrease",
-            description=say("{name} lower", name=say("Advised speed")),
-            icon=Icon.MINUS,
-            on_tap=_put(moved(-1)),
-            on_hold=_put(moved(-HELD_STEPS)),
-            disabled=say("It is at its lowest") if advised == SLOWEST_KMH else "",
-        ),
-        Label(
-            rect=number,
-            key="safety.speed.value",
-            text=shown,
-            description=say("Advised speed"),
-            style=Type.STRONG,
-            align="centre",
-        ),
-        Button(
-            rect=plus,
-            key="safety.speed.increase",
-            description=say("{name} higher", name=say("Advised speed")),
-            icon=Icon.PLUS,
-            on_tap=_put(moved(1)),
-            on_hold=_put(moved(HELD_STEPS)),
-            disabled=say("It is at its highest") if advised == FASTEST_KMH else "",
-        ),
-        Choice(
-            rect=posted,
-            key="safety.speed.posted",
-            text=say("Use posted limit"),
-            selected=advised is None,
-            look="boxed",
-            on_tap=_put(replace(draft, speed_kmh=None)),
-        ),
+    number = Label(key="safety.speed.value", text=shown, description=name, style=Type.STRONG, align="centre")
+    posted = Choice(
+        key="safety.speed.posted",
+        text=say("Use posted limit"),
+        selected=advised is None,
+        look="boxed",
+        on_tap=_put(replace(draft, speed_kmh=None)),
     )
-
-
-def _help(rect: Rect, state: State) -> tuple[Widget, ...]:
-    first, _, earlier = column(rect, 204, GAP, REST)
-    upper, lower = first.rows(2, 12)
-    hazard, slow = upper.columns(2, 12)
-    stop, call = lower.columns(2, 12)
-    return (
-        switch(hazard, "safety.hazard_lights", say("Hazards"), Icon.HAZARD, LIGHTS.HAZARD, state.signals),
-        Button(
-            rect=slow,
-            key="safety.slow_down",
-            text=say("Slow down"),
-            icon=Icon.SLOWER,
-            stacked=True,
-            on_tap=AskSlowDown(),
-        ),
-        Button(
-            rect=stop,
-            key="safety.pull_over",
-            text=say("Pull over"),
-            icon=Icon.PULL_OVER,
-            stacked=True,
-            on_tap=AskPullOver(),
-        ),
-        Button(
-            rect=call,
-            key="safety.emergency_call",
-            text=say("SOS call"),
-            icon=Icon.PHONE_ALERT,
-            stacked=True,
-            look=Look.CRITICAL,
-            on_tap=Show("emergency"),
-        ),
-        _history(earlier, state),
+    steps = line(
+        (64, step("decrease", less, Icon.MINUS, -1, SLOWEST_KMH, say("It is at its lowest"))),
+        number,
+        (64, step("increase", more, Icon.PLUS, 1, FASTEST_KMH, say("It is at its highest"))),
     )
+    return stack(heading(name), 12, (64, steps), 12, (52, posted))
 
 
-def _history(rect: Rect, state: State) -> Widget:
-    head, _, body = column(rect.inset(16, 14), 28, 6, REST)
-    given = tuple(reversed(state.of(Alerts).given))
+def _help(state: State) -> Block:
+    def button(key: str, text: str, icon: Icon, on_tap: Message, look: Look = Look.TONAL) -> Button:
+        return Button(key=f"safety.{key}", text=text, icon=icon, stacked=True, look=look, on_tap=on_tap)
 
-    def line(index: int, box: Rect) -> Widget:
-        entry = given[index]
-        name, icon = KINDS[entry.alert.kind]
+    buttons = grid(
+        2,
+        12,
+        switch(LIGHTS.HAZARD, state, key="safety.hazard_lights"),
+        button("slow_down", say("Slow down"), Icon.SLOWER, AskSlowDown()),
+        button("pull_over", say("Pull over"), Icon.PULL_OVER, AskPullOver()),
+        button("emergency_call", say("SOS call"), Icon.PHONE_ALERT, Show("emergency"), Look.CRITICAL),
+    )
+    return stack((204, buttons), GAP, (REST, _history(state)))
+
+
+def _history(state: State) -> Block:
+    given = state.of(Alerts).given[::-1]
+
+    def entry(index: int, each: AlertRecord) -> Row:
+        name, icon = KINDS[each.alert.kind]
         return Row(
-            rect=box,
             key=f"safety.history.{index}",
-            text=say("{first}, {second}", first=name, second=_URGENT[entry.alert.severity]),
-            detail=f"{entry.clock} {entry.answer}".strip(),
+            text=say("{first}, {second}", first=name, second=_URGENT[each.alert.severity]),
+            detail=f"{each.clock} {each.answer}".strip(),
             icon=icon,
         )
 
-    empty = Label(
-        rect=body.top(40), key="safety.history.empty", text=say("No alerts yet"), tone="muted", style=Type.LABEL
-    )
-    listed = rows(body, "safety.history", say("Alerts given"), state, len(given), line, height=84, gap=6)
-    return Card(rect=rect, children=(heading(head, say("History")), listed if given else empty))
+    listed = rows("safety.history", say("Alerts given"), state, given, entry, height=84, gap=6)
+    empty = Label(key="safety.history.empty", text=say("No alerts yet"), tone="muted", style=Type.LABEL)
+    body: BlockItem = (REST, listed if given else stack((40, empty), REST))
+    return card(heading(say("History")), 6, body, padding=(16, 14))
 
 
 def emergency(state: State) -> tuple[Widget, ...]:
     """Asks for confirmation before it calls."""
-    card = content(state).middle(640, 400)
-    picture, _, question, _, about, _, answers = column(card.inset(40, 36), 72, 16, 48, 6, 72, REST, 88)
-    cancel, call = answers.columns(2, GAP)
     made = "emergency" in state.of(Phone).called
-    return (
-        Card(
-            rect=card,
-            children=(
-                Glyph(rect=picture, icon=Icon.PHONE_ALERT, size=64, tone="accent"),
-                Label(
-                    rect=question,
-                    key="emergency.title",
-                    text=say("Call the emergency services?"),
-                    style=Type.TITLE,
-                    align="centre",
-                ),
-                Label(
-                    rect=about,
-                    key="emergency.about",
-                    text=say("Emergency call placed. They have the car's position.")
-                    if made
-                    else say("They will receive the car's position. A call can't be undone."),
-                    tone="muted",
-                    align="centre",
-                    lines=2,
-                ),
-                Button(
-                    rect=cancel,
-                    key="emergency.cancel",
-                    text=say("Back"),
-                    look=Look.TONAL,
-                    style=Type.STRONG,
-                    on_tap=Back(),
-                ),
-                Button(
-                    rect=call,
-                    key="emergency.call",
-                    text=say("Call now"),
-                    icon=Icon.PHONE,
-                    look=Look.CRITICAL,
-                    style=Type.STRONG,
-                    on_tap=CallEmergency(),
-                ),
-            ),
-        ),
+    question = Label(
+        key="emergency.title", text=say("Call the emergency services?"), style=Type.TITLE, align="centre"
     )
+    told = Label(
+        key="emergency.about",
+        text=say("Emergency call placed. They have the car's position.")
+        if made
+        else say("They will receive the car's position. A call can't be undone."),
+        tone="muted",
+        align="centre",
+        lines=2,
+    )
+    cancel = Button(key="emergency.cancel", text=say("Back"), style=Type.STRONG, on_tap=Back())
+    call = Button(
+        key="emergency.call",
+        text=say("Call now"),
+        icon=Icon.PHONE,
+        look=Look.CRITICAL,
+        style=Type.STRONG,
+        on_tap=CallEmergency(),
+    )
+    whole = card(
+        (72, Glyph(icon=Icon.PHONE_ALERT, size=64, tone="accent")),
+        16,
+        (48, question),
+        6,
+        (72, told),
+        REST,
+        (88, grid(2, GAP, cancel, call)),
+        padding=(40, 36),
+    )
+    return fill(content(state).middle(640, 400), whole)

@@ -1,0 +1,152 @@
+"""Flow: what stands on a screen in the order in which it is read, each part as high as it is by nature.
+
+    card(title(Icon.VOLUME, say("Volume")), 20, slider(MEDIA.VOLUME, state), REST, switch(MEDIA.MUTED, state))
+
+Widgets are made without their boxes; ``fill`` gives a box to each. Between them, a number is a gap, and ``REST``
+one that takes what the others leave. ``(92, part)`` is a part with another height than its own, or in a ``line``
+its width, and ``(REST, part)`` one that takes what is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, LayoutPart, column, panes, row
+from automotive_cosim.cockpit.theme import Type
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Slider, Tile, Widget
+
+HEIGHTS = {Tile: 60, Slider: 84, Button: 72}
+"""Natural heights in logical pixels; a label in ``Type.LABEL`` is as high as ``LINE``, others take what is left."""
+LINE = 28
+PADDING = 28, 24
+"""Between the edge of a large card and what is in it."""
+
+
+@dataclass(slots=True)
+class Block:
+    """Parts, and how a box is divided among them; they need not have a box of their own in the tree."""
+
+    parts: tuple[BlockPart | None, ...]
+    """None where a box stays empty."""
+    divide: Callable[[Rect], Iterable[Rect]]
+    height: LayoutPart = REST
+    """Its natural height; ``REST`` if it takes what is left."""
+    frame: Card | None = None
+    """The card around them, which has the whole box."""
+
+
+BlockPart = Widget | Block | Callable[[Rect], Widget]
+"""A widget without its box, several of them, or what makes one for its box."""
+BlockItem = BlockPart | int | None | tuple[LayoutPart, BlockPart]
+"""A part, a gap, or a part with a size."""
+
+
+def fill(rect: Rect, *parts: BlockPart | None) -> tuple[Widget, ...]:
+    """The widgets of the parts, each of which has the whole box."""
+    return tuple(widget for part in parts for widget in _placed(part, rect))
+
+
+def _placed(part: BlockPart | None, rect: Rect) -> Iterator[Widget]:
+    if isinstance(part, Widget):
+        object.__setattr__(part, "rect", rect)
+        yield part
+    elif isinstance(part, Block):
+        inner = [
+            widget for one, box in zip(part.parts, part.divide(rect), strict=False) for widget in _placed(one, box)
+        ]
+        if part.frame is None:
+            yield from inner
+        else:
+            object.__setattr__(part.frame, "rect", rect)
+            object.__setattr__(part.frame, "children", tuple(inner))
+            yield part.frame
+    elif part is not None:
+        yield part(rect)
+
+
+def natural(part: BlockPart | None) -> LayoutPart:
+    """The height of a part that is not told another."""
+    if isinstance(part, Block):
+        return part.height
+    if isinstance(part, Label):
+        return LINE if part.style is Type.LABEL and part.lines == 1 else REST
+    return HEIGHTS.get(type(part)) if isinstance(part, Widget) else REST
+
+
+def stack(*items: BlockItem) -> Block:
+    """One above the other."""
+    parts, sizes = _sized(items, natural)
+    known = [size for size in sizes if size is not None]
+    return Block(parts, lambda rect: column(rect, *sizes), sum(known) if len(known) == len(sizes) else REST)
+
+
+def line(*items: BlockItem) -> Block:
+    """Side by side; as high as the highest."""
+    parts, sizes = _sized(items, lambda part: REST)
+    return Block(parts, lambda rect: row(rect, *sizes), _highest(parts))
+
+
+def panels(*items: BlockItem) -> Block:
+    """Side by side, a gap apart; one above the other where the box is taller than wide (``layout.panes``)."""
+    parts, sizes = _sized(items, lambda part: REST)
+    return Block(parts, lambda rect: panes(rect, *sizes))
+
+
+def grid(columns: int, gap: int | tuple[int, int], *parts: BlockPart | None) -> Block:
+    """Cells of one size, line by line; ``gap`` is between them, or across and down."""
+    across, down = gap if isinstance(gap, tuple) else (gap, gap)
+    lines = -(-len(parts) // columns)
+    highest = _highest(parts)
+    return Block(
+        parts,
+        lambda rect: [cell for one in rect.rows(lines, down) for cell in one.columns(columns, across)],
+        highest if highest is None else lines * (highest + down) - down,
+    )
+
+
+def at(shape: Callable[[Rect], Rect], *parts: BlockPart) -> Block:
+    """Parts in a box that is derived from theirs: ``at(lambda box: box.middle(88, 64), button)``."""
+    return Block(parts, lambda rect: [shape(rect)] * len(parts))
+
+
+def card(*items: BlockItem, padding: tuple[int, int] = PADDING, height: LayoutPart = REST, **options: Any) -> Block:
+    """A stack on a card; ``options`` are fields of ``Card``."""
+    inner = stack(*items)
+    return framed(inner, padding, height, **options)
+
+
+def framed(inner: BlockPart, padding: tuple[int, int] = (0, 0), height: LayoutPart = REST, **options: Any) -> Block:
+    """A card around a part."""
+    across, down = padding
+    return Block((inner,), partial(_inset, across, down), height, Card(**options))
+
+
+def _inset(across: int, down: int, rect: Rect) -> tuple[Rect]:
+    return (rect.inset(across, down),)
+
+
+def _highest(parts: Iterable[BlockPart | None]) -> LayoutPart:
+    heights = [natural(part) for part in parts if part is not None]
+    known = [height for height in heights if height is not None]
+    return max(known) if known and len(known) == len(heights) else REST
+
+
+def _sized(
+    items: Iterable[BlockItem], size_of: Callable[[BlockPart], LayoutPart]
+) -> tuple[tuple[BlockPart | None, ...], tuple[LayoutPart, ...]]:
+    parts, sizes = list[BlockPart | None](), list[LayoutPart]()
+    for item in items:
+        if item is None or isinstance(item, int):
+            parts.append(None)
+            sizes.append(item)
+        elif isinstance(item, tuple):
+            sizes.append(item[0])
+            parts.append(item[1])
+        else:
+            parts.append(item)
+            sizes.append(size_of(item))
+    return tuple(parts), tuple(sizes)
