@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from zlib import crc32
 
+from automotive_cosim.cockpit.theme import Colour
 from automotive_cosim.contracts import SeenVehicle, SumoSignal
-from automotive_cosim.view.lens import Lens, Seen
+from automotive_cosim.view.lens import FromLens, Lens
 
-Colour = tuple[int, int, int]
 Profile = tuple[tuple[float, float, float], ...]
 """Points of the side view from the lower rear over the roof to the lower front: share of the length from the rear,
 height in metres, and half the width there as a share of half the vehicle's."""
@@ -28,7 +28,7 @@ RED_ON, RED, AMBER, WHITE, BLUE = (255, 40, 36), (122, 18, 22), (255, 168, 30), 
 class Face:
     """A plane face."""
 
-    corners: tuple[Seen, ...]
+    corners: tuple[FromLens, ...]
     colour: Colour
     shines: bool = False
     """Whether it gives light, so that darkness does not change it."""
@@ -82,7 +82,7 @@ TWO_WHEELS = ("bicycle", "moped", "motorcycle", "scooter")
 ON_FOOT = ("pedestrian", "wheelchair")
 
 
-def shadow(vehicle: SeenVehicle, lens: Lens) -> tuple[Seen, ...]:
+def shadow(vehicle: SeenVehicle, lens: Lens) -> tuple[FromLens, ...]:
     """The road under a vehicle."""
     place = _placed(vehicle, lens)
     w = vehicle.width_m / 2
@@ -122,7 +122,7 @@ class _placed:  # noqa: N801, it is used as a function
         self._y = vehicle.y_m - vehicle.length_m * self._north
         self._lens = lens
 
-    def __call__(self, along_m: float, right_m: float, up_m: float) -> Seen:
+    def __call__(self, along_m: float, right_m: float, up_m: float) -> FromLens:
         return self._lens.sees(
             self._x + along_m * self._east + right_m * self._north,
             self._y + along_m * self._north - right_m * self._east,
@@ -130,7 +130,7 @@ class _placed:  # noqa: N801, it is used as a function
         )
 
 
-def _faces_lens(corners: tuple[Seen, ...], lens: Lens) -> bool:
+def _faces_lens(corners: tuple[FromLens, ...], lens: Lens) -> bool:
     """Whether the outside of a face is turned to the lens: its corners run clockwise as seen from there."""
     (ax, ay, az), (bx, by, bz), (cx, cy, cz) = corners[:3]
     ux, uy, uz = bx - ax, by - ay, bz - az
@@ -177,7 +177,7 @@ def _lit(colour: Colour, percent: int) -> Colour:
     return r, g, b
 
 
-def _depth(corners: tuple[Seen, ...]) -> float:
+def _depth(corners: tuple[FromLens, ...]) -> float:
     return sum(corner[1] for corner in corners) / len(corners)
 
 
@@ -250,15 +250,13 @@ def _lamps(vehicle: SeenVehicle, place: _placed, lens: Lens, form: _Form, *, dar
             yield Face(tuple(place(at, side * right * wide, up) for right, up in corners), colour, lit)
 
 
-def _upright(middle: Seen, half_m: float, low: float, high: float, colour: Colour, *, shines: bool = False) -> Face:
+def upright(middle: FromLens, half_m: float, low: float, high: float, colour: Colour) -> Face:
     """A flat figure that is turned to the lens."""
     x, y, _ = middle
-    return Face(
-        ((x - half_m, y, low), (x - half_m, y, high), (x + half_m, y, high), (x + half_m, y, low)), colour, shines
-    )
+    return Face(((x - half_m, y, low), (x - half_m, y, high), (x + half_m, y, high), (x + half_m, y, low)), colour)
 
 
-def _round(middle: Seen, radius: float, up: float, colour: Colour, *, shines: bool = False) -> Face:
+def _round(middle: FromLens, radius: float, up: float, colour: Colour, *, shines: bool = False) -> Face:
     x, y, _ = middle
     turns = [math.pi * step / 5 for step in range(10)]
     return Face(tuple((x + radius * math.cos(t), y, up + radius * math.sin(t)) for t in turns), colour, shines)
@@ -270,8 +268,8 @@ def _person(vehicle: SeenVehicle, lens: Lens, lift_m: float) -> Iterator[Face]:
     step = 0.09 if crc32(vehicle.vehicle_id.encode()) % 2 else 0.06
     for side in (-1, 1):
         leg = (middle[0] + side * step, middle[1], 0.0)
-        yield _upright(leg, 0.07, lift_m, lift_m + 0.85, (44, 50, 64))
-    yield _upright(middle, 0.23, lift_m + 0.8, lift_m + 1.45, coat)
+        yield upright(leg, 0.07, lift_m, lift_m + 0.85, (44, 50, 64))
+    yield upright(middle, 0.23, lift_m + 0.8, lift_m + 1.45, coat)
     yield _round(middle, 0.12, lift_m + 1.6, (206, 164, 138))
 
 
@@ -285,10 +283,10 @@ def _rider(vehicle: SeenVehicle, lens: Lens, *, dark: bool) -> Iterator[Face]:
         yield Face(tuple(hub), TYRE)
     middle = place(long / 2, 0.0, 0.0)
     is_motor = vehicle.kind != "bicycle"
-    yield _upright(place(long * 0.4, 0.0, 0.0), 0.04 if not is_motor else 0.16, 0.1, 0.75, TYRE)
+    yield upright(place(long * 0.4, 0.0, 0.0), 0.04 if not is_motor else 0.16, 0.1, 0.75, TYRE)
     frame = ((0.2, 0.35), (0.35, 0.85), (0.75, 0.85), (0.8, 0.35))
     yield Face(tuple(place(a * long, 0.0, up) for a, up in frame), paint_of(vehicle))
-    yield _upright(middle, 0.22, 0.8, 1.4, (40, 44, 52) if is_motor else paint_of(vehicle))
+    yield upright(middle, 0.22, 0.8, 1.4, (40, 44, 52) if is_motor else paint_of(vehicle))
     yield _round(middle, 0.14, 1.58, (230, 232, 236) if is_motor else (206, 164, 138))
     is_rear = place(0.0, 0.0, 0.0)[1] < place(long, 0.0, 0.0)[1]
     brakes = bool(vehicle.signals & SumoSignal.BRAKE) and is_motor
@@ -297,14 +295,14 @@ def _rider(vehicle: SeenVehicle, lens: Lens, *, dark: bool) -> Iterator[Face]:
         yield _round(place(0.0 if is_rear else long, 0.0, 0.0), 0.08, 0.72, colour, shines=True)
 
 
-def cone(middle: Seen) -> Iterator[Face]:
+def cone(middle: FromLens) -> Iterator[Face]:
     """A cone on the road."""
     x, y, _ = middle
     yield Face(((x - 0.2, y, 0.0), (x, y, 0.75), (x + 0.2, y, 0.0)), (240, 96, 30))
     yield Face(((x - 0.12, y, 0.3), (x - 0.07, y, 0.48), (x + 0.07, y, 0.48), (x + 0.12, y, 0.3)), (244, 244, 244))
 
 
-def barrier(left: Seen, right: Seen) -> Iterator[Face]:
+def barrier(left: FromLens, right: FromLens) -> Iterator[Face]:
     """A board across a lane with red and white stripes."""
     steps = 8
     for at in range(steps):

@@ -21,10 +21,10 @@ FINE = 2
 NEAR_M = 0.4
 """What is nearer to the lens is cut off."""
 
-Point = tuple[float, float]
-Seen = tuple[float, float, float]
+XY = tuple[float, float]
+FromLens = tuple[float, float, float]
 """Metres to the right of the lens, ahead of it, and above the road."""
-Floats = npt.NDArray[np.float64]
+Corners = npt.NDArray[np.float64]
 
 
 @lru_cache(maxsize=16)
@@ -51,21 +51,21 @@ class Lens:
     mirrored: bool = False
     """Whether left and right change places, as behind a car."""
 
-    def sees(self, x_m: float, y_m: float, up_m: float = 0.0) -> Seen:
+    def sees(self, x_m: float, y_m: float, up_m: float = 0.0) -> FromLens:
         """Where a point of the network is from here."""
         east, north = _turn(self.heading_deg)
         dx, dy = x_m - self.x_m, y_m - self.y_m
         right = dx * north - dy * east
         return (-right if self.mirrored else right), dx * east + dy * north, up_m
 
-    def all(self, points_m: Floats) -> tuple[Floats, Floats]:
+    def all(self, points_m: Corners) -> tuple[Corners, Corners]:
         """The same of many points on the road: to the right, and ahead."""
         east, north = _turn(self.heading_deg)
         dx, dy = points_m[:, 0] - self.x_m, points_m[:, 1] - self.y_m
         right = dx * north - dy * east
         return (-right if self.mirrored else right), dx * east + dy * north
 
-    def pixel(self, seen: Seen, fine: int = 1) -> tuple[int, int]:
+    def pixel(self, seen: FromLens, fine: int = 1) -> tuple[int, int]:
         """The pixel of a point that is ahead.
 
         Args:
@@ -78,19 +78,19 @@ class Lens:
         down = self.horizon * HEIGHT * fine + (self.up_m - up) * scale
         return round(across), round(down)
 
-    def pixels(self, right: Floats, ahead: Floats) -> list[tuple[int, int]]:
+    def pixels(self, right: Corners, ahead: Corners) -> list[tuple[int, int]]:
         """The pixels of many points on the road in the picture as it is painted; those not ahead anywhere."""
         scale = self.focal * WIDTH * FINE / np.maximum(ahead, NEAR_M)
         across = np.rint(WIDTH * FINE / 2 + right * scale).astype(np.int64)
         down = np.rint(self.horizon * HEIGHT * FINE + self.up_m * scale).astype(np.int64)
         return list(zip(across.tolist(), down.tolist(), strict=True))
 
-    def shape(self, corners: Iterable[Seen], fine: int = 1) -> list[tuple[int, int]]:
+    def shape(self, corners: Iterable[FromLens], fine: int = 1) -> list[tuple[int, int]]:
         """The pixels of a plane face, without what is too near; empty if nothing is left of it."""
         kept = clipped(list(corners))
         return [self.pixel(corner, fine) for corner in kept]
 
-    def on_road(self, across_px: float, down_px: float) -> Point:
+    def on_road(self, across_px: float, down_px: float) -> XY:
         """The point of the road, in the network, that a pixel below the horizon shows."""
         scale = (down_px - self.horizon * HEIGHT) / self.up_m
         ahead, right = self.focal * WIDTH / scale, (across_px - WIDTH / 2) / scale
@@ -99,11 +99,11 @@ class Lens:
         return self.x_m + ahead * east + right * north, self.y_m + ahead * north - right * east
 
 
-def clipped(corners: Sequence[Seen]) -> list[Seen]:
+def clipped(corners: Sequence[FromLens]) -> list[FromLens]:
     """A polygon without what is nearer than ``NEAR_M``."""
     if all(corner[1] >= NEAR_M for corner in corners):
         return list(corners)
-    kept: list[Seen] = []
+    kept: list[FromLens] = []
     for at, here in enumerate(corners):
         before = corners[at - 1]
         if (here[1] >= NEAR_M) != (before[1] >= NEAR_M):

@@ -12,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
+from automotive_cosim.cockpit.theme import Colour
 from automotive_cosim.view import bodies
-from automotive_cosim.view.bodies import Colour, Face
-from automotive_cosim.view.lens import FINE, HEIGHT, NEAR_M, WIDTH, Seen
-from automotive_cosim.view.roads import Areas, Cover, Place, along, length_of
+from automotive_cosim.view.bodies import Face
+from automotive_cosim.view.lens import FINE, HEIGHT, NEAR_M, WIDTH, FromLens
+from automotive_cosim.view.roads import Areas, Paving, Stand, along, length_of
 from automotive_cosim.view.scene import SIGHT_M, Board, Head, Outside, Posted, Scene
 from automotive_cosim.view.signs import board
 
@@ -28,18 +29,18 @@ MARKS_TO_M = 110.0
 
 LAND, BUILDING = (134, 138, 118), (168, 156, 142)
 COVERS: dict[int, Colour] = {
-    Cover.GREEN: (104, 132, 78),
-    Cover.WATER: (92, 128, 158),
-    Cover.CROSSING: (92, 94, 98),
-    Cover.FOOT: (158, 156, 152),
-    Cover.ROAD: (92, 94, 98),
-    Cover.BUS: (104, 88, 84),
-    Cover.BICYCLE: (122, 84, 76),
-    Cover.RAIL: (112, 106, 98),
-    Cover.KERB: (184, 182, 176),
-    Cover.STEEL: (70, 72, 76),
-    Cover.WHITE: (236, 236, 234),
-    Cover.YELLOW: (236, 236, 234),
+    Paving.GREEN: (104, 132, 78),
+    Paving.WATER: (92, 128, 158),
+    Paving.CROSSING: (92, 94, 98),
+    Paving.FOOT: (158, 156, 152),
+    Paving.ROAD: (92, 94, 98),
+    Paving.BUS: (104, 88, 84),
+    Paving.BICYCLE: (122, 84, 76),
+    Paving.RAIL: (112, 106, 98),
+    Paving.KERB: (184, 182, 176),
+    Paving.STEEL: (70, 72, 76),
+    Paving.WHITE: (236, 236, 234),
+    Paving.YELLOW: (236, 236, 234),
 }
 """Lines between two directions are white, but for these countries, where they are yellow."""
 YELLOW_LINES = ("US", "CA", "NO", "CN", "BR", "MX")
@@ -147,7 +148,7 @@ class _Painter:
         starts = ends - counts
         first, last = np.minimum.reduceat(ahead, starts), np.maximum.reduceat(ahead, starts)
         wide = 0.5 / self._lens.focal * last + 1.0
-        is_seen = (last > NEAR_M) & (first < np.where(covers >= Cover.KERB, MARKS_TO_M, SIGHT_M + 60.0))
+        is_seen = (last > NEAR_M) & (first < np.where(covers >= Paving.KERB, MARKS_TO_M, SIGHT_M + 60.0))
         is_seen &= (np.minimum.reduceat(right, starts) < wide) & (np.maximum.reduceat(right, starts) > -wide)
         seen = np.flatnonzero(is_seen)
         pixels, polygon = self._lens.pixels(right, ahead), self._draw.polygon
@@ -165,9 +166,9 @@ class _Painter:
         scene, wet = self._scene, self._outside.weather.precipitation > 0.1 and not self._outside.in_tunnel
         colours = dict(COVERS)
         if self._outside.country in YELLOW_LINES:
-            colours[Cover.YELLOW] = (232, 186, 60)
+            colours[Paving.YELLOW] = (232, 186, 60)
         if wet:
-            for cover in (Cover.CROSSING, Cover.FOOT, Cover.ROAD, Cover.BUS, Cover.BICYCLE):
+            for cover in (Paving.CROSSING, Paving.FOOT, Paving.ROAD, Paving.BUS, Paving.BICYCLE):
                 colours[cover] = _mixed(colours[cover], (44, 50, 60), 0.4)
         if self._is_even:
             colours = {cover: _mixed((0, 0, 0), colour, self._light) for cover, colour in colours.items()}
@@ -175,7 +176,7 @@ class _Painter:
         for vehicle in (*scene.vehicles, *scene.people):
             shape = self._lens.shape(bodies.shadow(vehicle, self._lens), FINE)
             if len(shape) > 2:
-                self._draw.polygon(shape, _mixed(COVERS[Cover.ROAD], (20, 22, 26), 0.6))
+                self._draw.polygon(shape, _mixed(COVERS[Paving.ROAD], (20, 22, 26), 0.6))
 
     def _air(self) -> None:
         """Light and haze over the ground, which both depend on the distance."""
@@ -233,7 +234,7 @@ class _Painter:
         scene, lens = self._scene, self._lens
         things: list[tuple[float, Callable[[], None]]] = []
 
-        def add(place: Seen, paint: Callable[[], None]) -> None:
+        def add(place: FromLens, paint: Callable[[], None]) -> None:
             if place[1] > NEAR_M and abs(place[0]) < 0.5 / lens.focal * place[1] + 15.0:
                 things.append((place[1], paint))
 
@@ -253,7 +254,7 @@ class _Painter:
         for _, paint in sorted(things, key=lambda each: -each[0]):
             paint()
 
-    def _turned(self, place: Place) -> float:
+    def _turned(self, place: Stand) -> float:
         """1 for what is made for who drives as the lens looks, -1 for who comes towards it."""
         return math.cos(math.radians(place.heading_deg - self._lens.heading_deg))
 
@@ -277,11 +278,11 @@ class _Painter:
                     yield middle, self._bay(here, there, stands, bright=at % 2 == 0)
 
     def _bay(
-        self, here: list[Seen], there: list[Seen], walls: tuple[bool, bool], *, bright: bool
+        self, here: list[FromLens], there: list[FromLens], walls: tuple[bool, bool], *, bright: bool
     ) -> Callable[[], None]:
         """A piece of a tunnel: its roof with a lamp, and its walls."""
 
-        def band(one: Seen, two: Seen, low: float, high: float, colour: Colour) -> None:
+        def band(one: FromLens, two: FromLens, low: float, high: float, colour: Colour) -> None:
             self._put(Face(((*one[:2], low), (*one[:2], high), (*two[:2], high), (*two[:2], low)), colour))
 
         def paint() -> None:
@@ -314,16 +315,10 @@ class _Painter:
             face = Face(((ax, ay, 0.0), (ax, ay, BUILDING_M), (bx, by, BUILDING_M), (bx, by, 0.0)), colour)
             yield (ay + by) / 2, partial(self._put, face)
 
-    def _pole(self, place: Seen, up_m: float, half_m: float = 0.05) -> None:
-        x, y, _ = place
-        self._put(
-            Face(
-                ((x - half_m, y, 0.0), (x - half_m, y, up_m), (x + half_m, y, up_m), (x + half_m, y, 0.0)),
-                (122, 126, 130),
-            )
-        )
+    def _pole(self, place: FromLens, up_m: float) -> None:
+        self._put(bodies.upright(place, 0.05, 0.0, up_m, (122, 126, 130)))
 
-    def _post(self, posted: Posted, place: Seen) -> None:
+    def _post(self, posted: Posted, place: FromLens) -> None:
         lens = self._lens
         if posted.board is Board.CONE:
             self._put_all(bodies.cone(place))
@@ -360,7 +355,7 @@ class _Painter:
         seen = Image.blend(seen, Image.new("RGB", face.size, self._low), _haze(place[1], self._haze_m))
         self._image.paste(seen, (x - side // 2, y - side // 2), face.getchannel("A"))
 
-    def _signal(self, head: Head, place: Seen) -> None:
+    def _signal(self, head: Head, place: FromLens) -> None:
         lens, turned = self._lens, self._turned(head.place)
         x0, y0 = place[0] + head.aside_m * turned, place[1]
         if head.aside_m <= 0 and head.up_m < 4:
@@ -397,7 +392,7 @@ class _Painter:
             self._draw.ellipse((x - r, middle - r, x + r, middle + r), colour)
 
 
-def _between(row: list[Seen], share: float) -> Seen:
+def _between(row: list[FromLens], share: float) -> FromLens:
     """A point of a tunnel's roof between its two walls."""
     (ax, ay, _), (bx, by, _) = row
     return ax + share * (bx - ax), ay + share * (by - ay), TUNNEL_M

@@ -21,8 +21,8 @@ from automotive_cosim.contracts import (
     SeenVehicle,
     Weather,
 )
-from automotive_cosim.view.lens import Floats, Lens
-from automotive_cosim.view.roads import Areas, Place, RoadMap, Street, along
+from automotive_cosim.view.lens import Corners, Lens
+from automotive_cosim.view.roads import Areas, EdgeView, Stand, StreetMap, along
 
 SIGHT_M, SIGNS_M, BUILDINGS_M = 200.0, 120.0, 260.0
 """How far roads and vehicles, signs and signals, and buildings are drawn."""
@@ -50,7 +50,7 @@ class Posted:
     """A sign, or something that closes a lane."""
 
     board: Board
-    place: Place
+    place: Stand
     figure: str = ""
     """On a limit, in the unit of the country."""
     width_m: float = 0.0
@@ -63,7 +63,7 @@ class Posted:
 class Head:
     """The head of a signal."""
 
-    place: Place
+    place: Stand
     state: str
     """One of SUMO's letters."""
     up_m: float
@@ -107,12 +107,12 @@ class Scene:
 
     lens: Lens
     time_s: float
-    streets: tuple[Street, ...]
-    tunnels: tuple[Street, ...]
+    streets: tuple[EdgeView, ...]
+    tunnels: tuple[EdgeView, ...]
     """Those of the streets that have walls and a roof."""
     ground: Areas
     """Green, water and junctions."""
-    buildings: tuple[Floats, ...]
+    buildings: tuple[Corners, ...]
     """Their outlines."""
     vehicles: tuple[SeenVehicle, ...]
     people: tuple[SeenVehicle, ...]
@@ -130,7 +130,7 @@ class Signed(Protocol):
         ...
 
 
-class Sight:
+class Sights:
     """Makes scenes of one network."""
 
     def __init__(self, shapes: RoadShapes, network: RoadNetwork, signed: Signed | None = None) -> None:
@@ -142,7 +142,7 @@ class Sight:
             signed: what a sign shows in a network that was moved to another country; None as it is.
         """
         self.of = shapes, network, signed
-        self._map = RoadMap(shapes, network)
+        self._map = StreetMap(shapes, network)
         self._signed = signed
 
     def scene(
@@ -190,7 +190,7 @@ class Sight:
 
     def _posted(
         self,
-        streets: tuple[Street, ...],
+        streets: tuple[EdgeView, ...],
         snapshot: RoadSnapshot,
         driving: DrivingState,
         outside: Outside,
@@ -264,7 +264,7 @@ def _lens(driving: DrivingState, car: OwnCar, length_m: float) -> Lens:
     return Lens(x_m, y_m, driving.heading_deg, EYE_M, 0.8, 0.46)
 
 
-def _reached(route: list[str], within_m: float, roads: RoadMap) -> Iterator[str]:
+def _reached(route: list[str], within_m: float, roads: StreetMap) -> Iterator[str]:
     """The edges of the route that begin within a distance of the present one's end."""
     left_m = within_m
     for at, edge in enumerate(route):
@@ -279,10 +279,10 @@ def _is_near(vehicle: SeenVehicle, lens: Lens) -> bool:
     return -5.0 < ahead < SIGHT_M + 20.0
 
 
-def _is_on(vehicle: SeenVehicle, hidden: list[Street], streets: tuple[Street, ...]) -> bool:
+def _is_on(vehicle: SeenVehicle, hidden: list[EdgeView], streets: tuple[EdgeView, ...]) -> bool:
     """Whether a vehicle is nearer to a street on another level than to one in sight."""
 
-    def away(group: list[Street] | tuple[Street, ...]) -> float:
+    def away(group: list[EdgeView] | tuple[EdgeView, ...]) -> float:
         lines = (line for street in group for _, line, _ in street.lanes)
         return min((_distance(line, vehicle) for line in lines), default=math.inf)
 
@@ -301,7 +301,7 @@ def _distance(line: tuple[tuple[float, float], ...], vehicle: SeenVehicle) -> fl
 
 def _stacked(posted: Iterable[Posted]) -> tuple[Posted, ...]:
     """Signs at the same post above each other, each once."""
-    at: dict[Place, int] = {}
+    at: dict[Stand, int] = {}
     found = []
     for each in dict.fromkeys(posted):
         found.append(replace(each, above=at.get(each.place, 0)))
@@ -309,14 +309,14 @@ def _stacked(posted: Iterable[Posted]) -> tuple[Posted, ...]:
     return tuple(found)
 
 
-def _limit(limit: Limit, place: Place, outside: Outside) -> Posted:
+def _limit(limit: Limit, place: Stand, outside: Outside) -> Posted:
     if limit.mps is None:
         return Posted(Board.END_OF_LIMIT, place)
     figure = limit.mps * (MPH_PER_MPS if outside.unit == "mph" else KMH_PER_MPS)
     return Posted(Board.LIMIT, place, f"{figure:.0f}")
 
 
-def _heads(street: Street, lights: Mapping[str, str], lens: Lens) -> Iterator[Head]:
+def _heads(street: EdgeView, lights: Mapping[str, str], lens: Lens) -> Iterator[Head]:
     """At the kerb before the junction for the lane there, and across it over each lane; two beside each other where
     a lane's ways have different lights."""
     kerb = True
@@ -343,13 +343,13 @@ def without(scene: Scene, vehicle_id: str) -> Scene:
     )
 
 
-_last: list[Sight] = []
+_last: list[Sights] = []
 
 
-def sight_of(shapes: RoadShapes, network: RoadNetwork, signed: Signed | None) -> Sight:
+def sight_of(shapes: RoadShapes, network: RoadNetwork, signed: Signed | None) -> Sights:
     """The index of a network; the last one is kept, as all drives of a scenario have the same."""
     kept = _last[-1] if _last else None
     if kept is None or kept.of[0] is not shapes or kept.of[2] != signed:
-        kept = Sight(shapes, network, signed)
+        kept = Sights(shapes, network, signed)
         _last[:] = [kept]
     return kept

@@ -38,7 +38,7 @@ from automotive_cosim.geo.signs import LocalSigns
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.view import paint
 from automotive_cosim.view.lens import HEIGHT, WIDTH
-from automotive_cosim.view.scene import Board, Outside, OwnCar, Scene, Sight, without
+from automotive_cosim.view.scene import Board, Outside, OwnCar, Scene, Sights, without
 from automotive_cosim.view.signs import board
 
 CLEAR = Weather(18.0, 50.0, 0.0, 0, 5.0, 30_000.0, 5.0)
@@ -102,7 +102,7 @@ def made(
     at: DrivingState | None = None,
 ) -> Scene:
     snapshot = RoadSnapshot(9.0, vehicles, (("t", lights),), closed=closed)
-    return Sight(SHAPES, of).scene(snapshot, at or driving(), outside, own)
+    return Sights(SHAPES, of).scene(snapshot, at or driving(), outside, own)
 
 
 def box(one: Scene, other: Scene, least: int = 8) -> tuple[int, int, int, int] | None:
@@ -273,7 +273,7 @@ def test_a_sign_stands_where_one_is_posted_and_only_there(
 
 def test_a_network_that_was_moved_shows_the_signs_of_its_new_country() -> None:
     snapshot = RoadSnapshot(9.0, (), ())
-    miles = Sight(SHAPES, network(BEFORE, OTHER), LocalSigns("mph", 5.0))
+    miles = Sights(SHAPES, network(BEFORE, OTHER), LocalSigns("mph", 5.0))
     outside = replace(DAY, country="US", unit="mph")
     assert boards(miles.scene(snapshot, driving(route_edges=("a",)), outside, LIT)) == {(Board.LIMIT, "20")}
 
