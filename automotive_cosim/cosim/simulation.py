@@ -15,11 +15,8 @@ import numpy.typing as npt
 
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
-<<<<<<< HEAD
-from automotive_cosim.cockpit.state import CommandRecord
-=======
 from automotive_cosim.cockpit.signals import GLASS, LIGHTS, MOTION
->>>>>>> ready/view
+from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, Element, Feedback, RoadSnapshot
 from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.cosim.car import Car
