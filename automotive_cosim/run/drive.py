@@ -30,7 +30,7 @@ from automotive_cosim.traffic.fork import Simulations
 
 
 @dataclass(frozen=True, kw_only=True)
-class DriveSetup(DriveSpec, TrialSetup):
+class DriveSetup(DriveSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVariableOverride]
     """One agent on one drive, by name; the same setup gives the same trace."""
 
     limits: Limits = field(default_factory=lambda: Limits().of_drives)

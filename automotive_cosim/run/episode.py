@@ -52,7 +52,7 @@ IN_RESULT = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class EpisodeSetup(EpisodeSpec, TrialSetup):
+class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVariableOverride]
     """One agent on one half of a task, by name; the same setup gives the same trace."""
 
     agent: str = "asurada"
