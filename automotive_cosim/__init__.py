@@ -25,9 +25,10 @@ _HOMES = {
     "automotive_cosim.interface.observe": ("Channel",),
     "automotive_cosim.report.results": ("load_results",),
     "automotive_cosim.run.batch": ("run_plan",),
-    "automotive_cosim.run.episode": ("EpisodeResult", "EpisodeSetup", "run_episode"),
+    "automotive_cosim.run.episode": ("EpisodeSetup",),
     "automotive_cosim.run.episode_row": ("EpisodeRow",),
     "automotive_cosim.run.plan": ("Plan", "make_plan"),
+    "automotive_cosim.run.trial": ("run_trial",),
 }
 """Where the public names are defined; ``__init__.pyi`` tells type checkers the same."""
 

@@ -10,9 +10,10 @@ from automotive_cosim.errors import CosimError, InfrastructureError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.results import load_results
 from automotive_cosim.run.batch import run_plan
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import Plan, make_plan
+from automotive_cosim.run.trial import run_trial
 
 __all__ = [
     "Action",
@@ -23,7 +24,6 @@ __all__ = [
     "CosimError",
     "DriveEnv",
     "Element",
-    "EpisodeResult",
     "EpisodeRow",
     "EpisodeSetup",
     "FlatDriveEnv",
@@ -37,8 +37,8 @@ __all__ = [
     "load_results",
     "make_agent",
     "make_plan",
-    "run_episode",
     "run_plan",
+    "run_trial",
 ]
 
 __version__: str

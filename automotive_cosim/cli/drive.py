@@ -22,6 +22,7 @@ from automotive_cosim.cli.options import (
 )
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -58,11 +59,13 @@ def drive(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.episode.own_prompt import instructions
-    from automotive_cosim.run.drive import DriveSetup, run_drive
-    from automotive_cosim.run.jobs import DriveJob, Limits
+    from automotive_cosim.run.drive import DriveSetup
+    from automotive_cosim.run.drive_row import DriveTrialRow
+    from automotive_cosim.run.jobs import Limits
     from automotive_cosim.run.record import Recorder, check_folder, stamped_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
+    from automotive_cosim.run.trial import run_trial
 
     under = Conditions.named(given(settings))
     limited = filled(LimitSettings, settings)
@@ -82,17 +85,19 @@ def drive(
         agent=player.name,
         model=player.model,
     )
-    job = DriveJob(setup)
     folder = out or stamped_folder(f"{family}-{player.name}-seed{seed}")
     check_folder(folder, force=force)
-    recorder, road = Recorder(job, folder, {"out": str(folder)}), RoadRecorder(folder, setup.about)
+    recorder, road = Recorder(setup, folder, {"out": str(folder)}), RoadRecorder(folder, setup.about)
     with closing(recorder), closing(road):
-        record = run_drive(job.planned(), setup, player, observers=(recorder, road), wall_s=limited.wall_s)
+        row = run_trial(setup, player, (recorder, road), wall_s=limited.wall_s)
+    if row.error is not None:
+        raise InfrastructureError(row.error)
+    assert isinstance(row, DriveTrialRow)
     if as_json:
-        print_json({**row_json(record.row), "out": str(folder)})
+        print_json({**row_json(row), "out": str(folder)})
         return
     console = Console(highlight=False)
-    _tell(console, record.row, record.timeline)
+    _tell(console, row, recorder.lines[-1]["result"]["timeline"])
     console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
 
 

@@ -220,19 +220,20 @@ def _said(progress: Progress[TrialRow]) -> str:
 def _announce(console: Console, plan: Plan, folder: Path) -> None:
     from rich.table import Table
 
-    from automotive_cosim.run.jobs import EpisodeJob
+    from automotive_cosim.run.drive import DriveSetup
+    from automotive_cosim.run.episode import EpisodeSetup
     from automotive_cosim.run.plan import languages_in_words
 
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
-    table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
-    episodes = [job for job in jobs if isinstance(job, EpisodeJob)]
+    table.add_row("agents", ", ".join(sorted({f"{job.agent} ({job.model})" for job in jobs})))
+    episodes = [job for job in jobs if isinstance(job, EpisodeSetup)]
     if episodes:
-        table.add_row("tasks", f"{len({job.setup.task for job in episodes})} (pairs in both halves)")
+        table.add_row("tasks", f"{len({job.task for job in episodes})} (pairs in both halves)")
     if len(episodes) < len(jobs):
-        families = {job.setup.family for job in jobs if not isinstance(job, EpisodeJob)}
+        families = {job.family for job in jobs if isinstance(job, DriveSetup)}
         table.add_row("drives", counted(len(families), "family", "families"))
-    table.add_row("scenarios", ", ".join(sorted({job.scenario for job in jobs})))
+    table.add_row("scenarios", ", ".join(sorted({job.in_scenario for job in jobs})))
     if left_out := plan.left_out():
         table.add_row("left out", f"{_named(left_out)}: not made for these scenarios; --everywhere includes them")
     if beyond := plan.beyond_the_list():
@@ -265,7 +266,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     table.add_row("runs", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}")
     table.add_row("folder", str(folder))
     console.print(table)
-    if any(job.setup.model == "rules" for job in jobs):
+    if any(job.model == "rules" for job in jobs):
         console.print("rules is a deterministic stand-in: its results say nothing about a language model.")
 
 

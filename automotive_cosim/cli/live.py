@@ -24,8 +24,9 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.frames import why
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
-from automotive_cosim.run.observer import Shot
+from automotive_cosim.run.episode import EpisodeResult
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.words import (
     is_over,
     limit_in_words,
@@ -69,7 +70,7 @@ class LongWait:
             self._tell(f"         waiting for {of}, {clock(time.monotonic() - begun_s)} so far")
 
 
-class Notes(EpisodeObserver):
+class Notes(TrialObserver):
     """Prints only the assumptions about a scenario, and why answers were no actions, to standard error."""
 
     def __init__(self) -> None:
@@ -82,12 +83,12 @@ class Notes(EpisodeObserver):
     def begun(self, session: Episode, shot: Shot) -> None:
         self._episode = session
 
-    def finished(self, result: EpisodeResult) -> None:
+    def finished(self, row: EpisodeRow, told: EpisodeResult | None) -> None:
         if lost := _no_action(self._episode):
             print(lost, file=sys.stderr)
 
 
-class Live(EpisodeObserver):
+class Live(TrialObserver):
     """Shows an episode as it runs and, at the end, the verdict and the timeline."""
 
     def __init__(self, console: Console | None = None, *, by_hand: bool = False, brief: bool = False) -> None:
@@ -186,7 +187,7 @@ class Live(EpisodeObserver):
                 self._wait()
         self._begins = None if declares else step.moment
 
-    def finished(self, result: EpisodeResult) -> None:
+    def finished(self, row: EpisodeRow, told: EpisodeResult | None) -> None:
         """The verdict and the timeline."""
         self._waiting.stop()
         if self._display is not None:
@@ -194,12 +195,11 @@ class Live(EpisodeObserver):
         self._release()
         if lost := _no_action(self._episode):
             self._console.print(Text(lost, style="yellow"), soft_wrap=True)
-        if result.steps or result.verdict:
-            lines = _verdict(result)
-            told = (
-                [Text.assemble(lines[0], (f": {why(result)}", "dim"))] if self._brief and result.verdict else lines
-            )
-            self._console.print(Text("\n").join(told), soft_wrap=True)
+        if told is not None and (row.steps or told.verdict):
+            lines = _verdict(row, told)
+            if self._brief and told.verdict:
+                lines = [Text.assemble(lines[0], (f": {why(row, told)}", "dim"))]
+            self._console.print(Text("\n").join(lines), soft_wrap=True)
 
     def _wait(self) -> None:
         if not self._by_hand:
@@ -267,12 +267,12 @@ def _traffic(moment: Moment) -> str:
     )
 
 
-def _verdict(result: EpisodeResult) -> list[Text]:
-    if result.success is None:
-        lines = [Text(f"no verdict: {result.end}", style="bold yellow")]
+def _verdict(row: EpisodeRow, result: EpisodeResult) -> list[Text]:
+    if row.success is None:
+        lines = [Text(f"no verdict: {row.end}", style="bold yellow")]
     else:
-        word, style = ("success", "bold green") if result.success else ("not solved", "bold red")
-        lines = [Text.assemble((word, style), f"  reward {result.reward:g}, {counted(result.steps, 'step')}")]
+        word, style = ("success", "bold green") if row.success else ("not solved", "bold red")
+        lines = [Text.assemble((word, style), f"  reward {row.reward:g}, {counted(row.steps, 'step')}")]
     for name, part in (result.verdict.parts if result.verdict else {}).items():
         mark = ("yes", "green") if part.ok else ("no ", "red")
         lines.append(Text.assemble(f"  {name.replace('_', ' '):<9} ", mark, "  ", (part.why, "dim")))

@@ -32,7 +32,9 @@ from automotive_cosim.run.settings import SingleSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.agents import Agent
-    from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup
+    from automotive_cosim.run.episode import EpisodeSetup
+    from automotive_cosim.run.observer import TrialObserver
+    from automotive_cosim.run.trial_row import TrialRow
     from automotive_cosim.traffic.fork import Simulations
 
 HEADLINE = (
@@ -121,28 +123,28 @@ def run(
         if how.pair:
             blind = replace(under, geo=GeoInput.NONE)
             both = ((setup, player), (replace(setup, conditions=blind), player_under(blind)))
-            results, page, conclusion = _recorded_pair(
+            rows, page, conclusion = _recorded_pair(
                 folder, both, simulations, wall_s=limited.wall_s, as_json=as_json
             )
         else:
             conclusion = ""
-            results = [
+            rows = [
                 _recorded(folder, setup, player, arguments, simulations, wall_s=limited.wall_s, as_json=as_json)
             ]
             page = folder / PAGE
-    has_begun = results[0].trace_sha256 is not None
+    has_begun = rows[0].trace_sha256 is not None
     if has_begun and "task" not in chosen and setup.task == ANYWHERE:
         typer.echo(f"no --task was given: this was {ANYWHERE}, which comes about on any road", err=True)
     if as_json:
-        told = [{**_headline(result), "out": str(folder)} for result in results]
+        told = [{**_headline(row), "out": str(folder)} for row in rows]
         print_json({"pair": told, "out": str(folder)} if how.pair else told[0])
     elif has_begun:
         typer.echo(f"Recorded in {folder}; open {page}")
         if conclusion:
             typer.echo(f"\n{conclusion}")
-    for result in results:
-        if result.error is not None:
-            raise InfrastructureError(result.error)
+    for row in rows:
+        if row.error is not None:
+            raise InfrastructureError(row.error)
 
 
 def _check_pair(player: Agent, under: Conditions) -> None:
@@ -160,29 +162,28 @@ def _recorded(
     player: Agent,
     arguments: Json,
     simulations: Simulations,
-    more: Sequence[EpisodeObserver] = (),
+    more: Sequence[TrialObserver] = (),
     *,
     wall_s: float,
     as_json: bool,
-) -> EpisodeResult:
+) -> TrialRow:
     """Runs an episode and records it."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
-    from automotive_cosim.run.episode import run_episode
-    from automotive_cosim.run.jobs import EpisodeJob
     from automotive_cosim.run.record import Recorder
     from automotive_cosim.run.road_recorder import RoadRecorder
+    from automotive_cosim.run.trial import run_trial
 
-    recorder = Recorder(EpisodeJob(setup), folder, {**arguments, "out": str(folder)}, whole=True)
+    recorder = Recorder(setup, folder, {**arguments, "out": str(folder)}, whole=True)
     # A panel that redraws itself would interfere with a person who types.
     by_hand = player.name == "human"
     console = Console(force_terminal=False, highlight=False) if by_hand else None
     view = Live(console, by_hand=by_hand, brief=bool(more))
     observers = [recorder, RoadRecorder(folder, setup.about), Film(folder), Notes() if as_json else view, *more]
     try:
-        result = run_episode(setup, player, observers, simulations=simulations, wall_s=wall_s)
+        row = run_trial(setup, player, observers, simulations=simulations, wall_s=wall_s)
     except KeyboardInterrupt:
         if recorder.has_begun:
             write_page(folder)
@@ -190,7 +191,7 @@ def _recorded(
         raise
     if recorder.has_begun:
         write_page(folder)
-    return result
+    return row
 
 
 def _recorded_pair(
@@ -200,7 +201,7 @@ def _recorded_pair(
     *,
     wall_s: float,
     as_json: bool,
-) -> tuple[list[EpisodeResult], Path, str]:
+) -> tuple[list[TrialRow], Path, str]:
     """Runs two episodes from the same instant and records both, with the film and the page that show them, and what
     they show in a sentence."""
     from automotive_cosim.formats.layout import PAIR
@@ -208,22 +209,26 @@ def _recorded_pair(
     from automotive_cosim.report.pair import PairSide, screen_size, sentence, write_pair
 
     sides: list[PairSide] = []
+    rows: list[TrialRow] = []
     for title, name, (setup, player) in zip(PAIR_TITLES, PAIR, both, strict=True):
         if not as_json:
             typer.echo(f"{title}:")
         frames = Frames(screen_size())
-        result = _recorded(
+        row = _recorded(
             folder / name, setup, player, {"pair": name}, simulations, [frames], wall_s=wall_s, as_json=as_json
         )
-        if result.trace_sha256 is None:
-            return [result], folder, ""
-        sides.append(PairSide(title, folder / name, frames, result))
-    return [side.result for side in sides], write_pair(folder, sides), sentence(sides)
+        if row.trace_sha256 is None:
+            return [row], folder, ""
+        sides.append(PairSide(title, folder / name, frames))
+        rows.append(row)
+    return rows, write_pair(folder, sides), sentence(sides)
 
 
-def _headline(result: EpisodeResult) -> Json:
-    whole = result.as_json()
-    return {name: whole[name] for name in HEADLINE} | result.conditions.as_json()
+def _headline(row: TrialRow) -> Json:
+    from automotive_cosim.run.row import as_json
+
+    whole = as_json(row)
+    return {name: whole[name] for name in HEADLINE} | row.conditions.as_json()
 
 
 def _default_task(chosen: Mapping[str, Any]) -> str:

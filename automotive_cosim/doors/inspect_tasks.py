@@ -21,18 +21,16 @@ from inspect_ai.solver import Generate, Solver, TaskState, solver
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.inspect_play import outcome_of, played, seeds_of
 from automotive_cosim.doors.shared import SERVING, conditions_of, takes_conditions, words
-from automotive_cosim.drives.result import DriveOutcome
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.report.stats import Interval, wilson
-from automotive_cosim.run.drive import DriveSetup, judged_row
+from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.run.plan import choose, families_named
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.row import as_json, from_json
 from automotive_cosim.service.turn import Outcome
 from automotive_cosim.tasks import CATALOGUE
 
@@ -233,9 +231,8 @@ def _watched() -> Scorer:
 
 def _row(stored: Json) -> DriveTrialRow:
     """A sample's drive as a row of an evaluation."""
-    outcome = from_json(DriveOutcome, stored)
-    planned = DriveJob(DriveSetup(outcome.family, outcome.seed)).planned()
-    return judged_row(planned, outcome.end, (), outcome.result)
+    planned = DriveSetup(stored["family"], stored["seed"]).planned()
+    return from_json(DriveTrialRow, as_json(planned) | stored["result"] | {"end": stored["end"]})
 
 
 watched = scorer(metrics={name: [figure(name)] for name in SCORES}, name="watched")(_watched)

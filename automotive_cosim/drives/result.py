@@ -2,52 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.cosim.exposed import states_of, stretches
-from automotive_cosim.drives.harm import Harm, distraction_s
+from automotive_cosim.drives.harm import distraction_s
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.specification import End
-from automotive_cosim.measures import ExposureCell, FollowingFigures, exposure, following_figures
-from automotive_cosim.tasking.policy import Breach
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DriveResult:
-    """The figures of a judged drive."""
-
-    agent_error: str | None
-    """How the agent's side failed; the rest of the drive then ran without it."""
-    score: Score
-    value: float
-    """The headline figure: 0 is doing nothing, 100 is the rule-perfect watcher."""
-    harm: Harm
-    baseline_harm: Harm
-    """The same for the do-nothing run."""
-    distraction_s: float
-    """Seconds for which messages took the driver's eyes off the road."""
-    events: tuple[JudgedEvent, ...]
-    acts: tuple[JudgedAct, ...]
-    breaches: tuple[Breach, ...]
-    """What the agent did against the house rules, told or not."""
-    unwatched_from_s: float | None
-    """From when nobody watched: the agent had failed or spent its budget. None if somebody did to the end."""
-    steps: int
-    malformed: int
-    """Steps lost to answers that were no action."""
-    malformed_why: str
-    """Why the first of them was none; empty without any."""
-    waits: int
-    wakes: int
-    """Waits and acts after which something had changed."""
-    trace_sha256: str
-    measures: FollowingFigures
-    """How close the car came to those in front and behind."""
-    exposure: tuple[ExposureCell, ...]
-    """How long and how far it drove in which conditions."""
+from automotive_cosim.measures import exposure, following_figures
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,45 +26,47 @@ class DriveOutcome:
     end: End
     sim_seconds: float
     """Simulated seconds from departure to the end."""
-    result: DriveResult
+    result: Mapping[str, Any]
+    """``figures``."""
 
     @property
     def trace_sha256(self) -> str:
         """Hash of all steps: equal for the same specification and actions, whoever sent them."""
-        return self.result.trace_sha256
+        sha256: str = self.result["trace_sha256"]
+        return sha256
 
     def as_json(self) -> Json:
         """The outcome as a JSON object."""
         return asdict(self) | {"trace_sha256": self.trace_sha256}
 
 
-def result_of(session: DriveSession) -> DriveResult:
-    """The figures of a session that is over."""
+def figures(session: DriveSession) -> dict[str, Any]:
+    """The figures of a session that is over, by the names that they have in a row."""
     judgement = session.judgement
     assert judgement is not None
     events, acts, found = judged_since(judgement, session.moments[0].time_s, session.seconds)
     mine, baseline = session.harms
     texts = [str(step.action.text) for step in session.steps if step.action is not None and step.action.text]
-    return DriveResult(
-        agent_error=session.failure,
-        score=found,
-        value=found.value,
-        harm=mine,
-        baseline_harm=baseline,
-        distraction_s=distraction_s(session.acts, texts),
-        events=events,
-        acts=acts,
-        breaches=session.breaches,
-        unwatched_from_s=session.unwatched_from_s,
-        steps=len(session.steps) - 1,
-        malformed=len(session.malformed),
-        malformed_why=next(iter(session.malformed), ""),
-        waits=session.waits,
-        wakes=session.wakes,
-        trace_sha256=session.trace_sha256,
-        measures=following_figures(states_of(session.moments)),
-        exposure=exposure(stretches(session.moments)),
-    )
+    return {
+        "agent_error": session.failure,
+        "score": found,
+        "value": found.value,
+        "harm": mine,
+        "baseline_harm": baseline,
+        "distraction_s": distraction_s(session.acts, texts),
+        "events": events,
+        "acts": acts,
+        "breaches": session.breaches,
+        "unwatched_from_s": session.unwatched_from_s,
+        "steps": len(session.steps) - 1,
+        "malformed": len(session.malformed),
+        "malformed_why": next(iter(session.malformed), ""),
+        "waits": session.waits,
+        "wakes": session.wakes,
+        "trace_sha256": session.trace_sha256,
+        "measures": following_figures(states_of(session.moments)),
+        "exposure": exposure(stretches(session.moments)),
+    }
 
 
 def judged_since(

@@ -9,7 +9,7 @@ from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.result import DriveOutcome, result_of
+from automotive_cosim.drives.result import DriveOutcome, figures
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
@@ -87,7 +87,7 @@ class DriveSpec:
         """The result, once the drive is over."""
         assert session.end is not None
         seconds = round(session.seconds, 3)
-        return DriveOutcome(episode_id, self.family, self.seed, session.end, seconds, result_of(session))
+        return DriveOutcome(episode_id, self.family, self.seed, session.end, seconds, figures(session))
 
 
 TrialSpec = EpisodeSpec | DriveSpec

@@ -8,7 +8,7 @@ from typing import Any
 
 from automotive_cosim.contracts import Action
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.result import result_of
+from automotive_cosim.drives.result import figures
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import MOST_STEPS, DriveSpec
@@ -111,9 +111,9 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, DriveSession]):
         session.step(action_of(action))
         info, reward = info_of(session), 0.0
         if session.end is not None:
-            result = result_of(session)
-            info |= {"score": result.value, "result": result, "trace_sha256": session.trace_sha256}
-            reward = result.value / 100.0
+            result = figures(session)
+            info |= {"score": result["value"], "result": result, "trace_sha256": session.trace_sha256}
+            reward = result["value"] / 100.0
         return self._encoded(), reward, *ended(session), info
 
     def _encoded(self) -> dict[str, Any]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from automotive_cosim.cockpit.cockpit import Cockpit
@@ -13,12 +13,19 @@ from automotive_cosim.episode.counterfactual import counterfactual
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import beginning
-from automotive_cosim.episode.situation import HandOver
-from automotive_cosim.episode.specification import End, SessionSetup
+from automotive_cosim.episode.situation import HandOver, SituationFinder
+from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource, SessionSetup
+from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.policy import Conduct
 from automotive_cosim.tasking.verdict import Verdict, judge
+from automotive_cosim.traffic.fork import Simulations
+
+AFTERMATH_S = 12.0
+"""The car drives on for this long after the end: enough for a driver to react and to brake from 80 to 50 km/h."""
 
 
 @dataclass(kw_only=True)
@@ -26,6 +33,9 @@ class Episode(JudgedSession):
     """A session on a task, from its hand-over. Make one with ``take_over``."""
 
     instance: Instance
+    scenario: Scenario
+    traffic_seed: int
+    """Seed of the traffic in which the situation has arisen."""
     at_hand_over: Cockpit
     """The cockpit as the agent took it over, which nobody touches."""
     owns_baseline: bool = True
@@ -34,6 +44,49 @@ class Episode(JudgedSession):
     """The verdict; None until the episode is over."""
     unsaid: tuple[Says, ...] = ()
     """What the driver may still say by himself."""
+    after: list[Moment] = field(default_factory=list)
+    """The aftermath."""
+    compared: tuple[Moment, ...] = ()
+    """The baseline run of a pair, up to the end of the aftermath."""
+
+    @classmethod
+    def begin_at(
+        cls,
+        spec: EpisodeSpec,
+        simulations: Simulations,
+        channels: Callable[[], frozenset[Channel]],
+        observer: Observer | None = None,
+        spare_traffic: Sequence[int] = (),
+    ) -> Episode:
+        """Drives to the hand-over, and begins there.
+
+        Args:
+            spec: what to run.
+            simulations: warm traffic, shared with others.
+            channels: what the agent wants to see, asked for at the hand-over.
+            observer: notified of progress.
+            spare_traffic: seeds of traffic to try in turn if the situation does not arise in the seed's own.
+
+        Raises:
+            UserError: something in the specification does not exist.
+            TriggerNotReachedError: the situation arose in no traffic; the error is that of the first.
+            TrafficError: the traffic simulation failed.
+        """
+        finder, seeds = SituationFinder(spec, simulations, observer=observer), SeedSource(spec.seed).next()
+        missed: TriggerNotReachedError | None = None
+        for traffic in (seeds.traffic, *spare_traffic):
+            try:
+                hand_over = finder.find(replace(seeds, traffic=traffic))
+            except TriggerNotReachedError as error:
+                missed = missed or error
+                continue
+            try:
+                return cls.take_over(hand_over, spec.session(channels()), observer)
+            except BaseException:
+                hand_over.world.close()
+                raise
+        assert missed is not None
+        raise missed
 
     @classmethod
     def take_over(cls, hand_over: HandOver, setup: SessionSetup, observer: Observer | None = None) -> Episode:
@@ -49,6 +102,8 @@ class Episode(JudgedSession):
         return cls(
             **begun,
             instance=instance,
+            scenario=hand_over.scenario,
+            traffic_seed=hand_over.traffic_seed,
             at_hand_over=world.cockpit.copy(),
             unsaid=instance.half.says,
             baseline=Baseline(world),
@@ -77,6 +132,7 @@ class Episode(JudgedSession):
             steps=list(self.steps),
             hashed=self.hashed.copy(),
             owns_baseline=False,
+            after=list(self.after),
             observer=Observer(),
         )
 
@@ -85,7 +141,25 @@ class Episode(JudgedSession):
         self.baseline.prepare(duration_s)
         moments = self._heard(self.world.advance(duration_s))
         self.baseline.see(moments)
+        self.after += moments
         return moments
+
+    def drive_on(self) -> None:
+        """The aftermath of one that is over; if the road fails in it, there is no verdict either."""
+        try:
+            for _ in range(int(AFTERMATH_S)):
+                self.aftermath(1.0)
+            if self.instance.task.second is not None:
+                self.compared = self.baseline.until(self.driven[-1].time_s)
+        except InfrastructureError:
+            # The figures of the row count the aftermath: without it they would not be those of another run.
+            self.verdict = None
+            raise
+
+    @property
+    def driven(self) -> list[Moment]:
+        """Moments from the hand-over to the end of the aftermath."""
+        return [*self.moments, *self.after]
 
     def close(self) -> None:
         """Ends the drive and, if it owns it, the baseline run; may be called again."""

@@ -26,6 +26,13 @@ class JudgedSession(Session, ABC):
     def is_judged(self) -> bool:
         """Whether it has been judged: false while it runs, and if it broke."""
 
+    def drive_on(self) -> None:
+        """What is still driven once it is over, for the record.
+
+        Raises:
+            InfrastructureError: the road failed.
+        """
+
     @property
     def baseline_moments(self) -> tuple[Moment, ...]:
         """The baseline run from the beginning to now."""

@@ -45,6 +45,9 @@ class HandOver:
     """The running co-simulation; whoever takes it over must close it."""
     drive: tuple[Moment, ...]
     """Moments from departure to the hand-over, one per simulated second."""
+    scenario: Scenario
+    traffic_seed: int
+    """Seed of the traffic in which the situation has arisen."""
 
 
 class SituationFinder:
@@ -124,7 +127,7 @@ class SituationFinder:
                     self._refuse_impossible(half, traffic.network)
                     drive = self._drive_up(_Drive.begun(self._couple(traffic, half, plan, draws)), half)
                     if drive is not None:
-                        return self._handed_over(draws, half, drive)
+                        return self._handed_over(draws, half, drive, seeds.traffic)
                 except BaseException:
                     traffic.close()
                     raise
@@ -262,14 +265,14 @@ class SituationFinder:
             return False
         return True
 
-    def _handed_over(self, draws: Draws, half: Half, drive: _Drive) -> HandOver:
+    def _handed_over(self, draws: Draws, half: Half, drive: _Drive, traffic_seed: int) -> HandOver:
         freshness = self._freshness(half, drive)
         rule = "" if self._has_own_law else bound(half, drive.moments[-1].context)
         if freshness is not None:
             drive = drive.freshened(freshness)
         drive.world.cockpit.expect(half.start.interruptions)
         instance = replace(self._draw(draws, drive.world.cockpit.content), rule=rule)
-        return HandOver(instance, drive.world, drive.moments)
+        return HandOver(instance, drive.world, drive.moments, self.scenario, traffic_seed)
 
     def _advanced(self, world: CoSimulation) -> tuple[Moment, ...]:
         moments = world.advance(TICK_S)

@@ -13,7 +13,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.proof.prover import GATES, Proof, Prover, proof_id
 from automotive_cosim.run.batch import BatchKind, Progress
-from automotive_cosim.run.executor import LoneJob, Runner
+from automotive_cosim.run.executor import Job, Runner
 from automotive_cosim.run.plan import choose
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import Store
@@ -68,7 +68,7 @@ class ProofPlan:
 
 
 @dataclass(frozen=True, slots=True)
-class ProofJob(LoneJob):
+class ProofJob(Job):
     """One task with one seed."""
 
     task: str

@@ -20,10 +20,11 @@ from automotive_cosim.publish.drives import PLANNED as DRIVE_PLANNED
 from automotive_cosim.publish.drives import UNJUDGED as DRIVE_UNJUDGED
 from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
-from automotive_cosim.run.collect import alerts, questioned
+from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.episode import IN_RESULT, EpisodeSetup, alerts, questioned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.regrade import judged_again
@@ -45,12 +46,6 @@ PLANNED = (
     "agent", "model", "conditions", "seed", "repeat", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
-ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "conditions", "seed", "traffic_seed",
-    "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
-    "breaches", "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
-)  # fmt: skip
-"""Fields of a row that the result at the end of the trace also has."""
 FROM_MOMENTS = (
     "local_time", "traffic", "signals", "weather", "gps", "connectivity", "context", "events",
 )  # fmt: skip
@@ -76,7 +71,7 @@ ON_TRUST = frozenset(
 """Fields that neither the bundle nor a replay can check."""
 
 
-def check_trial(folder: Path, job: TrialJob, row: TrialRow) -> tuple[Problem, ...]:
+def check_trial(folder: Path, job: TrialSetup, row: TrialRow) -> tuple[Problem, ...]:
     """Everything that is wrong with a trial.
 
     Args:
@@ -96,14 +91,13 @@ def check_trial(folder: Path, job: TrialJob, row: TrialRow) -> tuple[Problem, ..
         return (Problem(f"traces/{row.id}", "", f"cannot be checked: {why}"),)
 
 
-def _too_large(folder: Path, job: TrialJob) -> Problem | None:
+def _too_large(folder: Path, job: TrialSetup) -> Problem | None:
     """The first file of a trial that is larger than its plan allows."""
-    if isinstance(job, DriveJob):
-        of_trace = of_moments = SECOND_BYTES * (
-            family_named(job.setup.family).draw(job.setup.seed).duration_s + SPARE_S
-        )
+    if not isinstance(job, EpisodeSetup):
+        assert isinstance(job, DriveSetup)
+        of_trace = of_moments = SECOND_BYTES * (family_named(job.family).draw(job.seed).duration_s + SPARE_S)
     else:
-        of_trace = STEP_BYTES * ((job.setup.max_steps or job.task.max_steps) + SPARE_STEPS)
+        of_trace = STEP_BYTES * ((job.max_steps or job.entry.max_steps) + SPARE_STEPS)
         of_moments = SECOND_BYTES * (job.limits.sim_s + SPARE_S)
     for path, most in ((trace_file(folder, job.id), of_trace), (judged_file(folder, job.id), of_moments)):
         if path.is_file():
@@ -117,7 +111,7 @@ def _too_large(folder: Path, job: TrialJob) -> Problem | None:
     return None
 
 
-def _problems(folder: Path, job: TrialJob, row: TrialRow) -> Iterator[Problem]:
+def _problems(folder: Path, job: TrialSetup, row: TrialRow) -> Iterator[Problem]:
     planned = job.planned()
     if type(row) is not type(planned):
         yield Problem(ROWS, row.id, "is of another kind than the plan says")
@@ -125,10 +119,10 @@ def _problems(folder: Path, job: TrialJob, row: TrialRow) -> Iterator[Problem]:
     is_drive, told, expected = isinstance(row, DriveTrialRow), as_json(row), as_json(planned)
     yield from differences(ROWS, row.id, told, expected, DRIVE_PLANNED if is_drive else PLANNED, "the plan")
     yield from attempt_problems(row)
-    if isinstance(job, EpisodeJob) and isinstance(row, EpisodeRow):
-        if job.scenario in _shipped() and row.scenario != job.scenario:
-            yield Problem(ROWS, f"{row.id} scenario", f"is {row.scenario!r}, but {job.scenario!r} by the plan")
-        if row.traffic_seed not in (None, job.setup.seed, *job.setup.spare_traffic):
+    if isinstance(job, EpisodeSetup) and isinstance(row, EpisodeRow):
+        if job.in_scenario in _shipped() and row.scenario != job.in_scenario:
+            yield Problem(ROWS, f"{row.id} scenario", f"is {row.scenario!r}, but {job.in_scenario!r} by the plan")
+        if row.traffic_seed not in (None, job.seed, *job.spare_traffic):
             yield Problem(ROWS, f"{row.id} traffic_seed", f"is {row.traffic_seed}, which the plan does not have")
     if row.outcome is None:
         yield from differences(ROWS, row.id, told, expected, DRIVE_UNJUDGED if is_drive else UNJUDGED, "its error")
@@ -137,7 +131,7 @@ def _problems(folder: Path, job: TrialJob, row: TrialRow) -> Iterator[Problem]:
     elif isinstance(row, DriveTrialRow):
         yield from drive_problems(folder, row, told)
     elif row.end is not End.AGENT_FAILED or trace_file(folder, row.id).is_file():
-        assert isinstance(job, EpisodeJob)
+        assert isinstance(job, EpisodeSetup)
         assert isinstance(row, EpisodeRow)
         yield from _judged_problems(folder, job, row, told)
     elif row.outcome or row.agent_error is None:
@@ -151,7 +145,7 @@ def _malformed(row: EpisodeRow, steps: Sequence[Json]) -> Json:
     return {} if row.malformed is None else {"malformed": len(refused), "malformed_why": next(iter(refused), "")}
 
 
-def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json) -> Iterator[Problem]:
+def _judged_problems(folder: Path, job: EpisodeSetup, row: EpisodeRow, told: Json) -> Iterator[Problem]:
     *steps, last = read_trace(folder, row.id)
     judged = read_judged(folder, row.id, Judged)
     file, result = trace_file(folder, row.id).relative_to(folder).as_posix(), dict(last["result"])
@@ -189,7 +183,7 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
     yield from differences(ROWS, row.id, told, expected, expected, "its trace and the verdict on its moments")
     both = {"verdict": verdict.as_json(), "goal": judged.goal, "load": asdict(load)}
     yield from differences(file, "result", result, both, both, "the verdict on its moments")
-    yield from differences(file, "result", result, told, ALSO_IN_RESULT, f"its line in {ROWS}")
+    yield from differences(file, "result", result, told, (*IN_RESULT, "breaches"), f"its line in {ROWS}")
     yield from _end_problems(job, row, judged, len(steps) - 1)
     if row.end not in (End.OUT_OF_BUDGET, End.AGENT_FAILED) and row.tokens_in != sum(prompts):
         yield Problem(ROWS, f"{row.id} tokens_in", f"is {row.tokens_in}, but {sum(prompts)} by its trace")
@@ -232,23 +226,23 @@ def _answers(step: Json) -> Iterator[str]:
         yield str(action.get("text"))
 
 
-def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
+def _questions(job: EpisodeSetup, row: EpisodeRow, judged: Judged) -> Json:
     """The row's fields about questions."""
-    half = Instance(job.task, row.half, judged.goal, judged.parameters, language=row.conditions.language).half
+    half = Instance(job.entry, row.half, judged.goal, judged.parameters, language=row.conditions.language).half
     texts = (asked["text"] for asked in questions(judged.trace[0], judged.trace[-1]))
     return questioned(dialogue(texts, half.topics, half.needed_topics, half.neutral))
 
 
-def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:
+def _end_problems(job: EpisodeSetup, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:
     """Problems with the end of the episode, compared with its moments."""
     last = judged.trace[-1]
     passed_s = last.time_s - judged.trace[0].time_s
-    most_s = job.setup.max_sim_s
+    most_s = job.max_sim_s
     if last.driving.end is not None:
         legal = {End.DRIVE_ENDED}
     elif judged.declared is not None:
         legal = {End.DECLARED}
-    elif steps >= (job.setup.max_steps or job.task.max_steps):
+    elif steps >= (job.max_steps or job.entry.max_steps):
         legal = {End.OUT_OF_STEPS}
     elif most_s is not None and passed_s >= most_s - ROUNDING_S:
         legal = {End.OUT_OF_TIME}
@@ -258,12 +252,12 @@ def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) 
         yield Problem(ROWS, f"{row.id} end", f"is {row.end}, but {' or '.join(sorted(legal))} by its moments")
 
 
-def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Iterator[Problem]:
+def _phrasing_problems(file: str, job: EpisodeSetup, row: EpisodeRow, judged: Judged) -> Iterator[Problem]:
     """Problems with the phrasing: it must be one of the task's, and held out or not as the row says."""
-    said = phrased(job.task, row.half, judged.parameters, row.conditions.language)
+    said = phrased(job.entry, row.half, judged.parameters, row.conditions.language)
     if judged.goal not in said:
         yield Problem(file, "goal", f"is {judged.goal!r}, which is not a phrasing of {row.task}")
-    elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):
+    elif row.held_out is not (judged.goal == said[-1]) or (job.held_out and not row.held_out):
         yield Problem(ROWS, f"{row.id} held_out", f"is {str(row.held_out).lower()}, but the phrasing is not")
 
 

@@ -12,11 +12,11 @@ from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import SAID
 from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
-from automotive_cosim.run.drive import DriveRecord, JudgedDrive
+from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
-from automotive_cosim.run.record import TrialRecord
+from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rerun import compare, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
@@ -42,7 +42,7 @@ RESULT = (
 STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s")
 
 
-def replay(folder: Path, job: TrialJob, row: TrialRow, simulations: Simulations) -> tuple[Problem, ...]:
+def replay(folder: Path, job: TrialSetup, row: TrialRow, simulations: Simulations) -> tuple[Problem, ...]:
     """What differs, bit for bit, when the actions of a stored trial are replayed.
 
     Raises:
@@ -52,28 +52,27 @@ def replay(folder: Path, job: TrialJob, row: TrialRow, simulations: Simulations)
     found: tuple[Problem, ...] = ()
     for channels in [frozenset(row.channels)] if isinstance(row, DriveTrialRow) else _channels(job, steps):
         again = played(job, steps, channels, row.agent_error, simulations=simulations)
-        found = tuple(_differences(folder, row, steps, last, again))
+        found = tuple(_differences(folder, row, steps, last, *again))
         if not found:
             break
     return found
 
 
-def _channels(job: TrialJob, steps: Sequence[Json]) -> list[frozenset[Channel]]:
+def _channels(job: TrialSetup, steps: Sequence[Json]) -> list[frozenset[Channel]]:
     """The channels that its agent may have had; no foreign agent is loaded to find out."""
-    setup = job.setup
-    if ":" not in setup.agent:
-        settings = AgentSettings(setup.conditions, seed=setup.seed)
-        return [frozenset(make_agent(setup.agent, "rules", settings).channels)]  # whatever its model
+    if ":" not in job.agent:
+        settings = AgentSettings(job.conditions, seed=job.seed)
+        return [frozenset(make_agent(job.agent, "rules", settings).channels)]  # whatever its model
     asks = any(step["action"] and step["action"]["action_type"] == ActionType.QUERY for step in steps)
     return [ALL, ALL - {Channel.GPS}, ALL - {Channel.CONTEXT}] if asks else [ALL]
 
 
 def _differences(
-    folder: Path, row: TrialRow, steps: Sequence[Json], last: Json, again: TrialRecord
+    folder: Path, row: TrialRow, steps: Sequence[Json], last: Json, new_row: TrialRow, again: Recorder
 ) -> Iterator[Problem]:
     *new_steps, new_last = json.loads(json.dumps(again.lines))
     file = trace_file(folder, row.id).relative_to(folder).as_posix()
-    if isinstance(again, DriveRecord):
+    if isinstance(row, DriveTrialRow):
         names = list(new_last["result"])
         for compared in compare(steps, new_steps):
             for name in compared.differs:
@@ -87,7 +86,7 @@ def _differences(
             yield from differences(file, f"step {number}", told, now, (*STEP, SAID), "its replay")
     yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
     names = [name for name in steady(row) if name not in OF_THE_AGENT]
-    yield from differences(ROWS, row.id, as_json(row), as_json(again.row), names, "its replay")
-    path, kind = judged_file(folder, row.id), JudgedDrive if isinstance(again, DriveRecord) else Judged
+    yield from differences(ROWS, row.id, as_json(row), as_json(new_row), names, "its replay")
+    path, kind = judged_file(folder, row.id), JudgedDrive if isinstance(row, DriveTrialRow) else Judged
     if read_judged(folder, row.id, kind) != again.judged:
         yield Problem(path.relative_to(folder).as_posix(), "", "differs from its replay")

@@ -33,7 +33,7 @@ from automotive_cosim.publish.episodes import check_trial
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.run.coverage import Coverage, coverage
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import as_json
@@ -138,7 +138,7 @@ class _Read:
 
     contents: Contents | None
     coverage: Coverage
-    jobs: Mapping[str, TrialJob]
+    jobs: Mapping[str, TrialSetup]
     """Those with a row."""
     rows: Mapping[str, TrialRow]
     """Those that the plan has."""
@@ -195,7 +195,7 @@ def _archive_problems(folder: Path, bundle: Path) -> Iterator[Problem]:
             )
 
 
-def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator[Problem]:
+def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialSetup]) -> Iterator[Problem]:
     plan, starts = manifest["plan"], manifest.get("starts") or []
     for name in manifest.keys() - {"format", "plan", "episodes", "starts"}:
         yield Problem(MANIFEST, name, "is not a field of a manifest")
@@ -281,7 +281,7 @@ def _sample(rows: Mapping[str, TrialRow], count: int, seed: int) -> list[str]:
     return [names[number] for number in sorted(drawn)]
 
 
-def _replayed(folder: Path, job: TrialJob, row: TrialRow) -> list[Problem]:
+def _replayed(folder: Path, job: TrialSetup, row: TrialRow) -> list[Problem]:
     try:
         with closing(Simulations()) as simulations:
             return list(replay(folder, job, row, simulations))

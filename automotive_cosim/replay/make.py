@@ -22,8 +22,9 @@ from automotive_cosim.models import ChatMessage, ModelReply, Rules
 from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, ProviderApi
 from automotive_cosim.models.base import estimated_tokens
 from automotive_cosim.models.replay import SUFFIX, shipped, text_digest
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, run_episode
-from automotive_cosim.run.observer import Shot
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.observer import Shot, TrialObserver
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 SETUP = EpisodeSetup("hvac_fan_max", scenario="grid")
@@ -31,7 +32,7 @@ SCREEN_PX = (1280, 720)
 THOUGHT = "I see what is wanted."
 
 
-class Touches(EpisodeObserver):
+class Touches(TrialObserver):
     """The acts of an agent as touches of the screen, as a model that sees the picture alone would do them."""
 
     def __init__(self) -> None:
@@ -76,7 +77,7 @@ def made(simulations: Simulations) -> dict[str, Json]:
     """
     watcher = Touches()
     setup = replace(SETUP, agent="oracle", model="none")
-    run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
+    run_trial(setup, make_agent("oracle"), (watcher,), simulations=simulations)
     found = {}
     for name, form in ((name, form) for name, form in FORMATS.items() if name in shipped()):
         bodies = (provider_body(name, text) for text in texts(name, watcher.actions))
@@ -152,13 +153,13 @@ def _recorded(
 ) -> Json:
     tells = _Tells(bodies, api)
     played = make_agent(agent, model, chat_model=tells)
-    result = run_episode(replace(SETUP, agent=agent, model=model), played, simulations=simulations)
+    row = run_trial(replace(SETUP, agent=agent, model=model), played, simulations=simulations)
     shown = {name: getattr(SETUP, name) for name in ("task", "half", "scenario", "seed")}
     return {
         "episode": shown,
         "agent": agent,
-        "end": str(result.end),
-        "success": result.success,
+        "end": str(row.end),
+        "success": row.outcome,
         "sees_pictures": tells.sees_pictures,
         "answers": tells.answers,
     }

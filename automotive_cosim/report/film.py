@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from PIL import Image
@@ -16,6 +17,7 @@ from automotive_cosim.report.filmplot import speed_plot
 from automotive_cosim.report.filmroad import RoadPainter, draw_road_sign
 from automotive_cosim.report.frames import SAME_TIME_S, FilmFrame, Frames, save_animation
 from automotive_cosim.run.episode import EpisodeResult
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import EMPTY, read_record
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
@@ -42,25 +44,26 @@ class Film(Frames):
         super().__init__(_pixels(COCKPIT))
         self._path = folder / FILM
 
-    def finished(self, result: EpisodeResult) -> None:
+    def finished(self, row: EpisodeRow, told: EpisodeResult | None) -> None:
         """Composes and writes the film, if there was a hand-over and a drive to it."""
-        frames = self.of(result)
-        if self.map is None or not frames:
+        super().finished(row, told)
+        frames = self.all()
+        if self.map is None or told is None or not frames:
             return
         road = self._path.with_name(ROAD_FILE)
         painter = RoadPainter(read_record(road) if road.is_file() else EMPTY, self.map)
-        pictures = [self._compose(frame, result, painter) for frame in frames]
+        pictures = [self._compose(frame, told.path, painter) for frame in frames]
         save_animation(self._path, pictures, [frame.milliseconds for frame in frames])
 
-    def _compose(self, frame: FilmFrame, result: EpisodeResult, painter: RoadPainter) -> Image.Image:
-        past = [sample for sample in result.path if sample.at_s <= frame.at_s + SAME_TIME_S]
+    def _compose(self, frame: FilmFrame, path: Sequence[Sample], painter: RoadPainter) -> Image.Image:
+        past = [sample for sample in path if sample.at_s <= frame.at_s + SAME_TIME_S]
         here = past[-1]
         canvas = Canvas.plain(round(WIDTH * SCALE), round(HEIGHT * SCALE), SCALE, NIGHT.background)
         canvas.box(COCKPIT.inset(-3), NIGHT.pressed, 17)
         canvas.picture(COCKPIT, frame.cockpit, 14)
         painter.draw(canvas, ROAD, past, (SIGN,))
         draw_road_sign(canvas, SIGN, here)
-        canvas.picture(PLOT, speed_plot(result.path, len(past), *_pixels(PLOT), SCALE), 14)
+        canvas.picture(PLOT, speed_plot(path, len(past), *_pixels(PLOT), SCALE), 14)
         _info(canvas, frame, here)
         return canvas.image
 

@@ -18,8 +18,9 @@ from automotive_cosim.cockpit.theme import NIGHT
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.formats.writing import drafted
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
-from automotive_cosim.run.observer import Shot
+from automotive_cosim.run.episode import EpisodeResult
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.observer import Shot, TrialObserver
 
 BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
 AFTER_EVERY_S = 1.0
@@ -46,7 +47,7 @@ class FilmFrame:
     milliseconds: int
 
 
-class Frames(EpisodeObserver):
+class Frames(TrialObserver):
     """Collects the frames while an episode runs."""
 
     def __init__(self, size: tuple[int, int]) -> None:
@@ -57,6 +58,8 @@ class Frames(EpisodeObserver):
         """
         self.map: RoadMap | None = None
         """The roads; None before the hand-over."""
+        self.came: tuple[EpisodeRow, EpisodeResult] | None = None
+        """What came of the episode; None before its end, and without a hand-over."""
         self._size = size
         self._before_s: deque[float] = deque(maxlen=BEFORE_FRAMES)
         """Simulation times before the hand-over that have a frame."""
@@ -90,15 +93,21 @@ class Frames(EpisodeObserver):
         at_s = step.moment.time_s - self._hand_over_s
         self._steps.append(self._frame(at_s, shot.screenshot, title, words, STEP_MS))
 
-    def of(self, result: EpisodeResult) -> list[FilmFrame]:
+    def finished(self, row: EpisodeRow, told: EpisodeResult | None) -> None:
+        """Keeps what came of it."""
+        self.came = None if told is None else (row, told)
+
+    def all(self) -> list[FilmFrame]:
         """The frames of the drive to a finished episode and of the episode; the last says how it ended."""
-        if self.map is None or not result.path:
+        if self.came is None or not self.came[1].path:
             return []
+        row, result = self.came
         # An earlier departure, on which the situation did not arise, is no part of the drive.
         begin_s = result.path[0].at_s - SAME_TIME_S
         frames = [frame for frame in (*self._approach(), *self._steps, *self._after) if frame.at_s >= begin_s]
         frames[-1:] = [
-            replace(frame, milliseconds=LAST_MS, title=outcome(result), words=why(result)) for frame in frames[-1:]
+            replace(frame, milliseconds=LAST_MS, title=outcome(row), words=why(row, result))
+            for frame in frames[-1:]
         ]
         return frames
 
@@ -127,17 +136,17 @@ class Frames(EpisodeObserver):
         return picture
 
 
-def outcome(result: EpisodeResult) -> str:
+def outcome(row: EpisodeRow) -> str:
     """How an episode ended, in a word or two."""
-    if result.success is None:
-        return f"No verdict: {result.end}"
-    return "Success" if result.success else "Not solved"
+    if row.success is None:
+        return f"No verdict: {row.end}"
+    return "Success" if row.success else "Not solved"
 
 
-def why(result: EpisodeResult) -> str:
+def why(row: EpisodeRow, result: EpisodeResult) -> str:
     """Why it ended so: the parts of the verdict that failed."""
     if result.verdict is None:
-        return result.error or "the episode was interrupted"
+        return row.error or "the episode was interrupted"
     parts = result.verdict.parts
     failed = [f"{name.replace('_', ' ')}: {part.why}" for name, part in parts.items() if not part.ok]
     return "; ".join(failed) or "goal reached, clean, safe, in time, declared"

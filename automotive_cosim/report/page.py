@@ -19,6 +19,7 @@ from automotive_cosim.report.playback import open_picture
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.trial_folder import read_steps, read_trial
 
@@ -44,11 +45,13 @@ def write_page(folder: Path) -> Path:
     told = read_trial(folder)
     if not told.get("result"):
         raise UserError(f"{folder} has no result: its trial has not ended")
-    result, manifest = from_json(EpisodeResult, told["result"]), told["manifest"]
+    row, result = from_json(EpisodeRow, told["row"]), from_json(EpisodeResult, told["result"])
+    manifest = told["manifest"]
     film = folder / FILM
     drive = result.path, result.timeline
     text = render(
         "report/page.html",
+        row=row,
         result=result,
         manifest=manifest,
         parts=PARTS,

@@ -38,6 +38,7 @@ from automotive_cosim.report.frames import (
 from automotive_cosim.report.page import PARTS, embedded
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import EMPTY, read_record
 from automotive_cosim.run.timeline import Sample
 
@@ -67,7 +68,21 @@ class PairSide:
     folder: Path
     """Its record."""
     frames: Frames
-    result: EpisodeResult
+
+    @property
+    def row(self) -> EpisodeRow:
+        """What came of it."""
+        return self._came[0]
+
+    @property
+    def result(self) -> EpisodeResult:
+        """What its trace tells besides."""
+        return self._came[1]
+
+    @property
+    def _came(self) -> tuple[EpisodeRow, EpisodeResult]:
+        assert self.frames.came is not None, "it is over"
+        return self.frames.came
 
 
 def screen_size() -> tuple[int, int]:
@@ -97,14 +112,14 @@ def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
         acted = {round(step.at_s, 1) for each in frames for step in each if step.milliseconds == STEP_MS}
         shown_ms = [STEP_MS if at_s in acted else AFTER_MS for at_s in times]
         save_animation(film, pictures, [*shown_ms[:-1], LAST_MS])
-    traces = [side.result.trace_sha256 for side in sides]
+    traces = [side.row.trace_sha256 for side in sides]
     write_whole(folder / FIGURES, json.dumps({"sentence": sentence(sides), "traces": traces}, indent=1) + "\n")
     page = folder / PAGE
     text = render(
         "report/pair.html",
         sentence=sentence(sides),
         sides=sides,
-        outcomes=[outcome(side.result) for side in sides],
+        outcomes=[outcome(side.row) for side in sides],
         parts=PARTS,
         film=embedded(read_bytes(film)) if film.is_file() else None,
         records=[side.folder.relative_to(folder).as_posix() for side in sides],
@@ -115,7 +130,7 @@ def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
 
 def sentence(sides: Sequence[PairSide]) -> str:
     """What the two runs show, with the figures of their last moments."""
-    return " ".join(f"{side.title}: {outcome(side.result).lower()}{_ends_at(side.result.path)}." for side in sides)
+    return " ".join(f"{side.title}: {outcome(side.row).lower()}{_ends_at(side.result.path)}." for side in sides)
 
 
 def _from_hand_over(side: PairSide) -> list[FilmFrame]:
@@ -124,7 +139,7 @@ def _from_hand_over(side: PairSide) -> list[FilmFrame]:
     The driver's words are above both screens, so the first frame goes without.
     """
     frames: list[FilmFrame] = []
-    for frame in side.frames.of(side.result):
+    for frame in side.frames.all():
         if frame.title == SAID:
             frame = replace(frame, title="Hand-over", words="")
         if frame.title == AFTER:
@@ -196,8 +211,8 @@ def _draw_side(canvas: Canvas, box: Rect, side: PairSide, frame: FilmFrame, here
     )
     canvas.picture(_screen(box), frame.cockpit, 14)
     notes = box.bottom_part(NOTES - 12)
-    is_last = frame.title == outcome(side.result)
-    good = bool(side.result.success)
+    is_last = frame.title == outcome(side.row)
+    good = bool(side.row.success)
     title_colour = NIGHT.text if not is_last else NIGHT.good if good else NIGHT.jam
     canvas.text(notes.top(38), frame.title, Type.TITLE if is_last else Type.STRONG, title_colour)
     canvas.text(notes.below(38).top(2 * Type.LABEL.pitch), frame.words, Type.LABEL, NIGHT.muted, lines=2)

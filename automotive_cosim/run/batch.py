@@ -24,7 +24,7 @@ from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run import worker
 from automotive_cosim.run.budget import MeterHandle, Spent
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Runner, Worker, failed
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue, SimulationKey
@@ -154,7 +154,7 @@ def run_plan(
         InfrastructureError: no worker becomes available.
         KeyboardInterrupt: passed on; only the running trials are lost.
     """
-    kind: BatchKind[Plan, TrialJob, TrialRow] = BatchKind(
+    kind: BatchKind[Plan, TrialSetup, TrialRow] = BatchKind(
         kind_of, partial(worker.trials, pictures), (TRACES, PICTURES), asks_models=True
     )
     return kind.run(plan, folder, executor=executor, retries=retries, budget=budget, tell=tell)

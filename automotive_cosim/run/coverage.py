@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.trial_row import TrialRow
 
@@ -60,7 +60,7 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
     errors, unit = len(rows) - judged, unit_of(manifest["plan"])
     if manifest.get("episodes") == len(rows):  # even if the catalogue has changed since
         return Coverage(judged, errors, shared=frozenset(rows), unit=unit)
-    jobs: dict[str, TrialJob] = {}
+    jobs: dict[str, TrialSetup] = {}
     try:
         jobs |= {job.id: job for job in make_plan(manifest["plan"]).jobs()}
         problem = _drift(manifest, rows, jobs)
@@ -91,7 +91,7 @@ def unit_of(plan: Json) -> str:
     return "trial" if tasks else "drive"
 
 
-def _drift(manifest: Json, rows: Mapping[str, TrialRow], jobs: Mapping[str, TrialJob]) -> str:
+def _drift(manifest: Json, rows: Mapping[str, TrialRow], jobs: Mapping[str, TrialSetup]) -> str:
     """How the plan's episodes differ from those of the version that ran it; empty if they do not."""
     count = manifest.get("episodes", len(jobs))
     if count != len(jobs):

@@ -1,11 +1,9 @@
-"""Runs one drive with an agent, from departure to its row."""
+"""A drive by name, what its session comes to, and its row."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import ExitStack, closing
-from dataclasses import asdict, dataclass, fields, replace
-from math import inf
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from automotive_cosim.agents import Agent
@@ -14,39 +12,98 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, EventKind
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.judge import ORDER, JudgedAct, JudgedEvent, facts_of, judge
-from automotive_cosim.drives.result import DriveResult, judged_since, result_of
+from automotive_cosim.drives.result import figures, judged_since
 from automotive_cosim.drives.score import Score
-from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
-from automotive_cosim.episode.observer import Observers
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import End
-from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import digests, plain
+from automotive_cosim.run.answers import Answers
 from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.jobs import NO_MODEL, Limits, TrialSetup
 from automotive_cosim.run.moments import JudgeInput
-from automotive_cosim.run.observer import Answers, TrialObserver, play_observed
+from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.tasking.sets import Split
+from automotive_cosim.tasking.split import split_of_seed
 from automotive_cosim.traffic.fork import Simulations
 
 
-@dataclass(frozen=True, slots=True)
-class DriveSetup(DriveSpec):
-    """A specification of a drive and an agent, by name; the same setup gives the same trace."""
+@dataclass(frozen=True, kw_only=True)
+class DriveSetup(DriveSpec, TrialSetup):
+    """One agent on one drive, by name; the same setup gives the same trace."""
 
-    agent: str = ""
-    model: str = "none"
+    limits: Limits = field(default_factory=lambda: Limits().of_drives)
+
+    @property
+    def in_scenario(self) -> str:
+        return self.scenario or family_named(self.family).scenario
 
     @property
     def about(self) -> Json:
-        """What is run, by name, as the file of its road tells it."""
-        return {
-            "task": self.family,
-            "scenario": self.scenario or family_named(self.family).scenario,
-            "agent": self.agent,
-            "model": self.model,
-            "seed": self.seed,
-        }
+        names = ("agent", "model", "seed")
+        return {"task": self.family, "scenario": self.in_scenario} | {name: getattr(self, name) for name in names}
+
+    @property
+    def split(self) -> Split:
+        """The public set that it belongs to, by its seed."""
+        return split_of_seed(self.seed)
+
+    @property
+    def kind(self) -> Hashable:
+        """Agent and model, which determine how long it takes; of agents without a model, the drive itself does."""
+        return "drive", self.model, "" if self.model == NO_MODEL else self.agent
+
+    @property
+    def instance(self) -> tuple[Hashable, ...]:
+        return self.family, self.in_scenario, self.settings, self.seed, self.repeat
+
+    @property
+    def id(self) -> str:
+        scenario = [self.scenario] if self.scenario else []
+        return self.id_of(self.family, rest=(*scenario, *self.settings.tags))
+
+    def planned(self) -> DriveTrialRow:
+        season = family_named(self.family).season
+        return DriveTrialRow(**self.named, family=self.family, season=season, settings=self.settings)
+
+    def started(self, simulations: Simulations, agent: Agent, observer: Observer) -> DriveSession:
+        return self.begin(simulations, agent.channels, observer)
+
+    def row(self, session: DriveSession | None, end: End, answers: Answers) -> DriveTrialRow:
+        row = replace(self.planned(), end=end)
+        if session is None or not session.is_judged:
+            return row
+        return replace(
+            row,
+            channels=tuple(sorted(session.setup.channels)),
+            calls=answers.calls,
+            thought_s=round(answers.thought_s, 3),
+            **answers.costs,
+            **figures(session),
+        )
+
+    def told(self, session: DriveSession) -> Json | None:
+        return timeline(session) if session.is_judged else None
+
+    def lines(self, session: DriveSession, row: TrialRow, told: Json, thoughts: Sequence[Json]) -> list[Json]:
+        begun_s = session.moments[0].time_s
+        steps: list[Json] = [
+            {
+                "step": step.number,
+                "time_s": round(step.moment.time_s - begun_s, 3),
+                "action": None if step.action is None else to_json(step.action),
+                "thought_s": step.thought_s,
+                "feedback": plain(step.feedback),
+                "sha256": digests(step.state),
+            }
+            for step in session.steps
+        ]
+        return [*steps, {"result": {"timeline": told}}]
+
+    def judged(self, session: DriveSession) -> JudgedDrive | None:
+        return JudgedDrive.of(session) if session.is_judged else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,100 +163,3 @@ class JudgedDrive(JudgeInput):
             session.moments[0].time_s,
             session.seconds,
         )
-
-
-@dataclass(frozen=True, slots=True)
-class DriveRecord:
-    """What is kept of a drive."""
-
-    row: DriveTrialRow
-    timeline: Json
-    """Speed, limit and the do-nothing run's speed, one value per second."""
-    steps: tuple[Json, ...]
-    """Action, thinking time and result of each step, with hashes of the state that followed."""
-    judged: JudgedDrive
-    """The judge's input."""
-
-    @property
-    def lines(self) -> list[Json]:
-        """Its trace: the steps, then the result."""
-        return [*self.steps, {"result": {"timeline": self.timeline}}]
-
-
-DriveObserver = TrialObserver[DriveSession, DriveRecord]
-"""Observes a drive."""
-
-
-def judged_row(
-    planned: DriveTrialRow, end: End, channels: tuple[Channel, ...], result: DriveResult, **totals: Any
-) -> DriveTrialRow:
-    """The row of a drive that is over.
-
-    Args:
-        planned: its row before it had run.
-        end: why it ended.
-        channels: what the agent was given.
-        result: how it was judged.
-        totals: fields of the row about the agent's model.
-    """
-    found = {entry.name: getattr(result, entry.name) for entry in fields(result)}
-    return replace(planned, end=end, channels=channels, **found, **totals)
-
-
-def run_drive(
-    planned: DriveTrialRow,
-    setup: DriveSetup,
-    agent: Agent,
-    *,
-    simulations: Simulations | None = None,
-    observers: Sequence[DriveObserver] = (),
-    plan: DriveScript | None = None,
-    wall_s: float = inf,
-) -> DriveRecord:
-    """Runs a drive to its end and judges it.
-
-    Args:
-        planned: its row before it has run.
-        setup: what to run.
-        agent: the agent that watches.
-        simulations: warm simulations to use; by default its own, closed with the drive.
-        observers: notified of everything as it happens.
-        plan: used instead of the family's plan for the seed.
-        wall_s: wall seconds from departure after which nobody watches.
-
-    Raises:
-        UserError: something in the setup does not exist.
-        InfrastructureError: traffic or model failed.
-    """
-    with ExitStack() as ends:
-        own = simulations or ends.enter_context(closing(Simulations()))
-        session = setup.begin(own, agent.channels, Observers(observers), plan)
-        ends.callback(session.close)
-        answers, channels = Answers(agent, setup.conditions), tuple(sorted(agent.channels))
-        agent.reset(session.goal)
-        end = play_observed(session, agent, answers, observers, wall_s)
-        result = result_of(session)
-        record = DriveRecord(
-            row=judged_row(planned, end, channels, result, **asdict(answers.usage)),
-            timeline=timeline(session),
-            steps=tuple(_steps(session)),
-            judged=JudgedDrive.of(session),
-        )
-        for observer in observers:
-            observer.finished(record)
-        return record
-
-
-def _steps(session: DriveSession) -> list[Json]:
-    begun_s = session.moments[0].time_s
-    return [
-        {
-            "step": step.number,
-            "time_s": round(step.moment.time_s - begun_s, 3),
-            "action": None if step.action is None else to_json(step.action),
-            "thought_s": step.thought_s,
-            "feedback": plain(step.feedback),
-            "sha256": digests(step.state),
-        }
-        for step in session.steps
-    ]

@@ -1,46 +1,58 @@
-"""One episode: an agent, a task, a seed; and the result.
-
-find -> take over -> brief -> (act -> step)* -> verdict -> aftermath
-"""
+"""An episode by name, what its session comes to, and its row."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import ExitStack, closing
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from math import inf
 from typing import Any
 
 from automotive_cosim import geo
-from automotive_cosim.agents import Agent, Learner, Privileged
+from automotive_cosim.agents import Agent
 from automotive_cosim.contracts import Json
+from automotive_cosim.cosim.exposed import states_of, stretches
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.observer import Observers
-from automotive_cosim.episode.situation import HandOver, SituationFinder
-from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
-from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
+from automotive_cosim.episode.observer import Observer
+from automotive_cosim.episode.specification import End, EpisodeSpec
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.geo.breaches import Violation
+from automotive_cosim.measures import exposure, following_figures
+from automotive_cosim.run.answers import Answers
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.estimates import PositionEstimate, estimates
-from automotive_cosim.run.harm import DriveFigures, drive_figures
+from automotive_cosim.run.harm import drive_figures, overspeed
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.load import DriverLoad, driver_load
-from automotive_cosim.run.observer import Answers, TrialObserver, play_observed
+from automotive_cosim.run.moments import Judged
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
+from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.tasking.dialogue import Question
 from automotive_cosim.tasking.policy import Breach
+from automotive_cosim.tasking.sets import Split
+from automotive_cosim.tasking.split import split_of
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
-AFTERMATH_S = 12.0
-"""The car drives on for this long after the end: enough for a driver to react and to brake from 80 to 50 km/h."""
+OVERSPEED_SCALE_MPS = 2.23
+"""Mean overspeed at which compliance is zero, 5 mph: nuPlan's speed-limit metric (``max_overspeed_value``)."""
+IN_RESULT = (
+    "task", "half", "scenario", "agent", "model", "conditions", "seed", "traffic_seed", "success", "reward",
+    "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in",
+    "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
+)  # fmt: skip
+"""Fields of a row that the result at the end of a trace repeats."""
 
 
-@dataclass(frozen=True, slots=True)
-class EpisodeSetup(EpisodeSpec):
-    """A specification and an agent, by name; the same setup gives the same trace."""
+@dataclass(frozen=True, kw_only=True)
+class EpisodeSetup(EpisodeSpec, TrialSetup):
+    """One agent on one half of a task, by name; the same setup gives the same trace."""
 
     agent: str = "asurada"
     model: str = "rules"
@@ -51,16 +63,154 @@ class EpisodeSetup(EpisodeSpec):
     traffic. No agent acts before it does, so every agent gets the same traffic."""
 
     @property
+    def entry(self) -> Task:
+        """The catalogue's entry."""
+        return CATALOGUE[self.task]
+
+    @property
+    def in_scenario(self) -> str:
+        return self.scenario or self.entry.half(self.half).start.scenario
+
+    @property
     def about(self) -> Json:
-        """What is run, by name, as the file of its road tells it."""
-        return {
-            "task": self.task,
-            "half": self.half,
-            "scenario": self.scenario or CATALOGUE[self.task].half(self.half).start.scenario,
-            "agent": self.agent,
-            "model": self.model,
-            "seed": self.seed,
-        }
+        names = ("task", "half", "agent", "model", "seed")
+        return {"scenario": self.in_scenario} | {name: getattr(self, name) for name in names}
+
+    @property
+    def split(self) -> Split:
+        """The public set that it belongs to, by its seed and its phrasing."""
+        return split_of(self.entry, self.seed, held_out=self.held_out, redrawn=self.redrawn)
+
+    @property
+    def kind(self) -> Hashable:
+        """The agent and its model, which determine how long it takes."""
+        return self.agent, self.model
+
+    @property
+    def situation(self) -> Hashable:
+        """The drive up to the hand-over, on which no agent acts."""
+        spoken = Conditions(language=self.conditions.language)
+        return replace(self, agent="", model="", without=(), conditions=spoken, repeat=0)
+
+    @property
+    def instance(self) -> tuple[Hashable, ...]:
+        return self.task, self.half, self.in_scenario, self.seed, self.repeat
+
+    @property
+    def id(self) -> str:
+        return self._id(self.half)
+
+    @property
+    def pair(self) -> str:
+        """Name that both halves of a pair share; empty for a task with one half."""
+        return self._id("pair") if self.entry.second else ""
+
+    def planned(self) -> EpisodeRow:
+        task, half = self.entry, self.entry.half(self.half)
+        return EpisodeRow(
+            **self.named,
+            task=task.id,
+            half=self.half,
+            pair=self.pair,
+            dimension=task.dimension,
+            module=task.module,
+            basis=half.basis,
+            suite=task.suite,
+            tags=tuple(sorted(task.tags)),
+            skills=tuple(sorted(task.skills)),
+            ability=task.ability,
+            declines=not half.moves,
+            held_out=self.held_out,
+        )
+
+    def started(self, simulations: Simulations, agent: Agent, observer: Observer) -> Episode:
+        return Episode.begin_at(self, simulations, lambda: agent.channels, observer, self.spare_traffic)
+
+    def row(self, session: Episode | None, end: End, answers: Answers) -> EpisodeRow:
+        row = replace(self.planned(), end=end, **answers.costs)
+        if session is None:
+            return replace(row, scenario=open_scenario(self.in_scenario).name)
+        verdict, load = session.verdict, driver_load(session.steps)
+        driven, end_s = session.driven, session.driven[-1].time_s
+        measured = following_figures(states_of(driven))
+        return replace(
+            row,
+            scenario=session.scenario.name,
+            parameters=dict(session.instance.parameters),
+            traffic_seed=session.traffic_seed,
+            country=session.moments[0].context.country,
+            success=verdict.success if verdict else None,
+            reward=float(verdict is not None and verdict.success),
+            agent_error=session.failure,
+            parts=PartsHeld.of(verdict) if verdict else None,
+            breaches=session.breaches if verdict else None,
+            goal_s=verdict.goal_s if verdict else None,
+            reason_fits=verdict.reason_fits if verdict else None,
+            alerts=alerts(session.moments[0], session.moments[-1]),
+            **questioned(session.questions),
+            steps=len(session.steps) - 1,
+            malformed=len(session.malformed),
+            malformed_why=next(iter(session.malformed), ""),
+            sim_seconds=round(session.seconds, 3),
+            thought_s=round(sum(step.thought_s for step in session.steps), 1),
+            speed_compliance=compliance(driven),
+            min_time_to_collision_s=measured.min_ttc_s,
+            measures=measured,
+            exposure=exposure(stretches(driven)),
+            drive=drive_figures(driven, end_s) if session.compared else None,
+            baseline_drive=drive_figures(session.compared, end_s) if session.compared else None,
+            interaction_s=load.interaction_s,
+            within_guideline=load.within_guideline,
+            taps=pixel_taps(session.steps),
+            prompt_tokens=answers.prompts,
+            held_out=session.instance.held_out,
+            trace_sha256=session.trace_sha256,
+        )
+
+    def told(self, session: Episode) -> EpisodeResult:
+        before = [*session.drive, *session.moments[1:]]
+        moments, begun_s = [*before, *session.after], session.moments[0].time_s
+        goal_s = session.verdict.goal_s if session.verdict else None
+        return EpisodeResult(
+            goal=session.goal,
+            verdict=session.verdict,
+            timeline=timeline(moments, session.steps, goal_s),
+            path=samples(moments, begun_s),
+            violations=tuple(
+                replace(found, from_s=round(found.from_s - begun_s, 3), to_s=round(found.to_s - begun_s, 3))
+                for found in geo.violations(moments)
+            ),
+            breaches=session.breaches,
+            without=self.without,
+            notes=session.scenario.notes,
+            estimates=estimates(session.steps, before),
+            load=driver_load(session.steps),
+        )
+
+    def lines(self, session: Episode, row: TrialRow, told: EpisodeResult, thoughts: Sequence[Json]) -> list[Json]:
+        steps = [step.as_json() | thought for step, thought in zip(session.steps, thoughts, strict=False)]
+        return [*steps, {"result": told.as_json(row)}]
+
+    def judged(self, session: Episode) -> Judged | None:
+        if session.verdict is None:
+            return None
+        last = session.steps[-1].action
+        return Judged(
+            session.instance.goal,
+            session.instance.parameters,
+            last.goal_status if last else None,
+            last.reason if last else None,
+            tuple(session.moments),
+            session.baseline_moments,
+            session.counterfactual,
+            session.instance.half.allowed_writes,
+            session.said,
+        )
+
+    def _id(self, half: str) -> str:
+        held_out = ["held_out"] if self.held_out else []
+        redrawn = [f"redrawn{self.redrawn}"] if self.redrawn else []
+        return self.id_of(self.task, half, rest=(self.scenario or "own", *held_out, *redrawn))
 
 
 def read_setup(values: Mapping[str, Any], where: str) -> EpisodeSetup:
@@ -74,240 +224,53 @@ def read_setup(values: Mapping[str, Any], where: str) -> EpisodeSetup:
 
 @dataclass(frozen=True, slots=True)
 class EpisodeResult:
-    """The result of one episode. Without a verdict, ``success`` is None and ``reward`` 0."""
+    """What the result at the end of an episode's trace tells besides its row."""
 
-    task: str
-    half: str
-    scenario: str
-    agent: str
-    model: str
-    seed: int
     goal: str
     """What the driver said."""
-    success: bool | None
-    reward: float
-    steps: int
-    """Number of actions, including unreadable ones."""
-    sim_seconds: float
-    """Simulated seconds from the hand-over to the end."""
-    trace_sha256: str | None
-    """Hash of the steps so far; None before the hand-over."""
     verdict: Verdict | None
     timeline: tuple[TimelineEntry, ...]
     path: tuple[Sample, ...]
     """The drive, once per second, from departure to the end of the aftermath."""
-    end: End
-    error: str | None = None
-    error_kind: str | None = None
-    """Name of the error's class in ``automotive_cosim.errors``."""
-    agent_error: str | None = None
-    """How the agent's side failed, if that ended the episode; ``success`` is then False."""
     violations: tuple[Violation, ...] = ()
     """Traffic law violations from departure to the end of the aftermath; seconds since the hand-over."""
     breaches: tuple[Breach, ...] = ()
     """What the agent did against the house rules, told or not."""
-    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
-    """What the agent was given, and at what speed."""
     without: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     """Assumptions where the scenario says nothing, e.g. that there is no GPS."""
-    held_out: bool = False
-    """Whether the driver's phrasing is held out from the rule model."""
-    traffic_seed: int | None = None
-    """Seed of the traffic in which the situation occurred: the seed, or a spare one; None without a hand-over."""
-    tokens_in: int = 0
-    """Total tokens sent to the model; estimated for ``rules``."""
-    tokens_out: int = 0
-    model_seconds: float = 0.0
-    """Total wait for the model; 0 for one that runs in this process."""
-    cost_usd: float = 0.0
     estimates: tuple[PositionEstimate, ...] = ()
     """The agent's position estimates while GPS was out."""
     load: DriverLoad | None = None
-    """Visual and manual load on the driver while the car moved; None without a hand-over."""
-    drive: DriveFigures | None = None
-    """Figures of the drive from the hand-over to the end of the aftermath; only of judged safety tasks."""
-    baseline_drive: DriveFigures | None = None
-    """The same figures of the baseline run, over the same time."""
+    """Visual and manual load on the driver while the car moved."""
 
-    def as_json(self) -> Json:
-        """The result as a JSON object; ``row.from_json`` reads it back."""
-        return asdict(self) | {"verdict": self.verdict and self.verdict.as_json()}
-
-
-EpisodeObserver = TrialObserver[Episode, EpisodeResult]
-"""Observes an episode. ``finished`` is called after its aftermath, and after an error or an interruption too."""
+    def as_json(self, row: TrialRow) -> Json:
+        """The result as a JSON object, with the fields of the row that it repeats; ``row.from_json`` reads it
+        back."""
+        of_the_row = as_json(row)
+        told = asdict(self) | {"verdict": self.verdict and self.verdict.as_json()}
+        return {name: of_the_row[name] for name in IN_RESULT} | told
 
 
-def run_episode(
-    setup: EpisodeSetup,
-    agent: Agent,
-    observers: Sequence[EpisodeObserver] = (),
-    *,
-    simulations: Simulations | None = None,
-    wall_s: float = inf,
-) -> EpisodeResult:
-    """Runs an episode to its end and judges it.
+def compliance(moments: Sequence[Moment]) -> float | None:
+    """Speed-limit compliance: 1 without overspeed, 0 from a mean overspeed of 2.23 m/s.
 
     Args:
-        setup: what to run; ``agent`` and ``model`` are only written into the result.
-        agent: the agent that acts.
-        observers: notified of everything as it happens.
-        simulations: warm simulations to use; by default its own, closed with the episode.
-        wall_s: wall seconds from the hand-over after which it is judged as it is.
-
-    Raises:
-        UserError: something in the setup does not exist or is invalid; no observer has seen a hand-over.
-        KeyboardInterrupt: passed on after the observers have received the result so far.
+        moments: in order; the result is None if no limit binds in any of them, or no time passes.
     """
-    with ExitStack() as ends:
-        own = simulations or ends.enter_context(closing(Simulations()))
-        finder = SituationFinder(setup, own, observer=Observers(observers))
-        run = _Run(setup, finder, agent, observers)
-        ends.callback(run.close)
-        try:
-            end = run.play(wall_s)
-        except InfrastructureError as error:
-            return run.finish(End.ERROR, error)
-        except KeyboardInterrupt:
-            run.finish(End.INTERRUPTED)
-            raise
-        return run.finish(end)
+    over_m, whole_s = overspeed(moments)
+    return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
 
 
-class _Run:
-    """One episode and the data collected along with it."""
+def questioned(questions: Sequence[Question]) -> dict[str, Any]:
+    """The fields of a row about questions to the driver."""
+    return {
+        "questions": len(questions),
+        "unneeded_questions": sum(not question.is_needed for question in questions),
+        "question_s": sum(question.seconds for question in questions),
+    }
 
-    def __init__(
-        self, setup: EpisodeSetup, finder: SituationFinder, agent: Agent, observers: Sequence[EpisodeObserver]
-    ) -> None:
-        self._setup = setup
-        self._finder = finder
-        self._agent = agent
-        self._observers = observers
-        self._episode: Episode | None = None
-        self._traffic_seed: int | None = None
-        self._answers = Answers(agent, setup.conditions)
-        self._after: list[Moment] = []
-        self._baseline: tuple[Moment, ...] = ()
 
-    def play(self, wall_s: float) -> End:
-        agent = self._agent
-        hand_over = self._find()
-        try:
-            session = self._setup.session(agent.channels)
-        except BaseException:  # its process cannot be started
-            hand_over.world.close()
-            raise
-        episode = self._episode = Episode.take_over(hand_over, session, Observers(self._observers))
-        agent.reset(episode.goal)
-        if isinstance(agent, Privileged):
-            agent.brief(episode.instance, drawn=episode.world.cockpit.drawn, branch=episode.branch)
-        end = play_observed(episode, agent, self._answers, self._observers, wall_s)
-        if isinstance(agent, Learner) and episode.verdict is not None:
-            agent.learn(episode.verdict.success)
-        self._drive_on(episode)
-        return end
-
-    def _find(self) -> HandOver:
-        seeds = SeedSource(self._setup.seed).next()
-        missed: TriggerNotReachedError | None = None
-        for traffic in (seeds.traffic, *self._setup.spare_traffic):
-            try:
-                hand_over = self._finder.find(replace(seeds, traffic=traffic))
-            except TriggerNotReachedError as error:
-                missed = missed or error
-            else:
-                self._traffic_seed = traffic
-                return hand_over
-        assert missed is not None
-        raise missed
-
-    def close(self) -> None:
-        if self._episode is not None:
-            self._episode.close()
-
-    def finish(self, end: End, error: InfrastructureError | None = None) -> EpisodeResult:
-        result = self._result(end, error)
-        for observer in self._observers:
-            observer.finished(result)
-        return result
-
-    def _drive_on(self, episode: Episode) -> None:
-        try:
-            for _ in range(int(AFTERMATH_S)):
-                self._after += episode.aftermath(1.0)
-            if episode.instance.task.second is not None:
-                self._baseline = episode.baseline.until(self._driven(episode)[-1].time_s)
-        except InfrastructureError:
-            # The figures of the row count the aftermath: without it they would not be those of another run.
-            episode.verdict = None
-            raise
-
-    def _driven(self, episode: Episode) -> list[Moment]:
-        """Moments from the hand-over to the end of the aftermath."""
-        return [*episode.moments, *self._after]
-
-    def _result(self, end: End, error: InfrastructureError | None) -> EpisodeResult:
-        setup, episode, usage = self._setup, self._episode, self._answers.usage
-        named: dict[str, Any] = {
-            "task": setup.task,
-            "half": setup.half,
-            "scenario": self._finder.scenario.name,
-            "notes": self._finder.scenario.notes,
-            "agent": setup.agent,
-            "model": setup.model,
-            "seed": setup.seed,
-            "traffic_seed": self._traffic_seed,
-            "end": end,
-            "error": None if error is None else str(error),
-            "error_kind": None if error is None else type(error).__name__,
-            "conditions": setup.conditions,
-            "without": setup.without,
-            "tokens_in": usage.tokens_in,
-            "tokens_out": usage.tokens_out,
-            "model_seconds": usage.model_seconds,
-            "cost_usd": usage.cost_usd,
-        }
-        if episode is None:
-            return EpisodeResult(
-                **named,
-                goal="",
-                success=None,
-                reward=0.0,
-                steps=0,
-                sim_seconds=0.0,
-                trace_sha256=None,
-                verdict=None,
-                timeline=(),
-                path=(),
-                held_out=setup.held_out,
-            )
-        judged = episode.verdict
-        before = [*episode.drive, *episode.moments[1:]]
-        moments = [*before, *self._after]
-        driven = self._driven(episode)
-        hand_over_s, end_s = driven[0].time_s, driven[-1].time_s
-        return EpisodeResult(
-            **named,
-            goal=episode.goal,
-            success=None if judged is None else judged.success,
-            reward=float(judged is not None and judged.success),
-            steps=len(episode.steps) - 1,
-            sim_seconds=round(episode.seconds, 3),
-            trace_sha256=episode.trace_sha256,
-            agent_error=episode.failure,
-            verdict=judged,
-            timeline=timeline(moments, episode.steps, None if judged is None else judged.goal_s),
-            path=samples(moments, hand_over_s),
-            held_out=episode.instance.held_out,
-            load=driver_load(episode.steps),
-            drive=drive_figures(driven, end_s) if self._baseline else None,
-            baseline_drive=drive_figures(self._baseline, end_s) if self._baseline else None,
-            breaches=episode.breaches,
-            estimates=estimates(episode.steps, before),
-            violations=tuple(
-                replace(found, from_s=round(found.from_s - hand_over_s, 3), to_s=round(found.to_s - hand_over_s, 3))
-                for found in geo.violations(moments)
-            ),
-        )
+def alerts(start: Moment, end: Moment) -> int:
+    """Alerts that the agent gave between two moments of its drive."""
+    return len(end.commands["alerts"]) - len(start.commands["alerts"])

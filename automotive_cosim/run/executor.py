@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
@@ -15,67 +16,43 @@ from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage
 
 
-class Job(Protocol):
+class Job(ABC):
     """Something to run that depends only on itself. It is sent to a worker."""
-
-    @property
-    def id(self) -> str:
-        """Id of its row."""
-        ...
-
-    @property
-    def simulation(self) -> tuple[str, int]:
-        """The warm simulation that it starts from; a worker runs the jobs of one simulation in a row."""
-        ...
-
-    @property
-    def situation(self) -> Hashable:
-        """The situation that must arise before the agent acts; if it does not for one job, it does not for any."""
-        ...
-
-    @property
-    def kind(self) -> Hashable:
-        """Determines how long it takes in a given simulation: jobs of one kind take about the same time."""
-        ...
-
-    @property
-    def warm_up_weight(self) -> float:
-        """How long the warm-up of its simulation takes, as a share of that of a large town."""
-        ...
-
-    @property
-    def wall_s(self) -> float:
-        """Limit of its wall time."""
-        ...
-
-    def planned(self) -> JobRow:
-        """Its row, as far as it is known before it runs."""
-        ...
-
-
-class LoneJob:
-    """A job of a study or proof: none depends on another's situation, and all take about the same time."""
 
     __slots__ = ()
 
     @property
+    @abstractmethod
     def id(self) -> str:
-        """Id of its row."""
-        raise NotImplementedError
+        """Id of its row, which can be a file name."""
+
+    @property
+    @abstractmethod
+    def simulation(self) -> tuple[str, int]:
+        """The warm simulation that it starts from; a worker runs the jobs of one simulation in a row."""
+
+    @property
+    @abstractmethod
+    def wall_s(self) -> float:
+        """Limit of its wall time."""
+
+    @abstractmethod
+    def planned(self) -> JobRow:
+        """Its row, as far as it is known before it runs."""
 
     @property
     def situation(self) -> Hashable:
-        """See ``Job``: its own."""
+        """The situation that must arise first; if it does not for one job, it does not for any."""
         return self.id
 
     @property
     def kind(self) -> Hashable:
-        """See ``Job``: one for all."""
+        """Determines how long it takes in a given simulation: jobs of one kind take about the same time."""
         return ""
 
     @property
     def warm_up_weight(self) -> float:
-        """See ``Job``: all are of one scenario."""
+        """How long the warm-up of its simulation takes, as a share of that of a large town."""
         return 1.0
 
 

@@ -15,7 +15,9 @@ from automotive_cosim.contracts.given import PromptLength, See
 from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN
 from automotive_cosim.models.remote import Settings
-from automotive_cosim.run.jobs import DriveJob, TrialJob, warm_up_s
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.jobs import TrialSetup, warm_up_s
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.trial_row import TrialRow
 
@@ -102,7 +104,7 @@ class CostForecast:
         return ""
 
 
-def forecast(jobs: Sequence[TrialJob], workers: int, rows: Iterable[TrialRow] = ()) -> CostForecast:
+def forecast(jobs: Sequence[TrialSetup], workers: int, rows: Iterable[TrialRow] = ()) -> CostForecast:
     """What the jobs that have not run yet will take.
 
     Args:
@@ -120,16 +122,16 @@ def forecast(jobs: Sequence[TrialJob], workers: int, rows: Iterable[TrialRow] = 
     wall_s /= max(1, min(workers, len(warm)))
     tokens = usd = Range(0.0, 0.0)
     for job in left:
-        if asks(job.setup.model):
+        if asks(job.model):
             sent, received = _tokens(job, own)
             tokens += Range(sent.low + received.low, sent.high + received.high)
-            usd += _usd(job.setup.model, sent, received)
+            usd += _usd(job.model, sent, received)
     return CostForecast(
         len(left),
         Range(wall_s / TIME_WITHIN, wall_s * TIME_WITHIN),
         tokens,
         usd,
-        any(asks(job.setup.model) for job in left),
+        any(asks(job.model) for job in left),
     )
 
 
@@ -138,10 +140,10 @@ def asks(model: str) -> bool:
     return not model.startswith(("rules", "none", "replay/"))
 
 
-def _seconds(job: TrialJob) -> float:
-    if isinstance(job, DriveJob):
+def _seconds(job: TrialSetup) -> float:
+    if isinstance(job, DriveSetup):
         return DRIVE_S
-    return GRID_EPISODE_S if job.scenario == "grid" else EPISODE_S
+    return GRID_EPISODE_S if job.in_scenario == "grid" else EPISODE_S
 
 
 def _own(rows: Iterable[TrialRow]) -> dict[Hashable, Tokens]:
@@ -156,41 +158,41 @@ def _own(rows: Iterable[TrialRow]) -> dict[Hashable, Tokens]:
     }
 
 
-def pictures_of(job: TrialJob) -> int:
+def pictures_of(job: TrialSetup) -> int:
     """How many pictures a step's question has, if the model sees any."""
-    is_withheld = job.setup.conditions.see in (See.TREE, See.NOTHING)
-    return 0 if is_withheld else PICTURED.get(job.setup.agent, int(job.setup.agent not in A_STEP))
+    is_withheld = job.conditions.see in (See.TREE, See.NOTHING)
+    return 0 if is_withheld else PICTURED.get(job.agent, int(job.agent not in A_STEP))
 
 
-def _tokens(job: TrialJob, own: Mapping[Hashable, Tokens]) -> tuple[Range, Range]:
+def _tokens(job: TrialSetup, own: Mapping[Hashable, Tokens]) -> tuple[Range, Range]:
     """What is sent and received in a trial."""
-    known = own.get((job.setup.agent, job.setup.model, type(job.planned())))
+    known = own.get((job.agent, job.model, type(job.planned())))
     low, high = (LEAST, MOST) if known is None else (LEAST_KNOWN, MOST_KNOWN)
     known = known or expected(job)
     return Range(low * known.sent, high * known.sent), Range(low * known.received, high * known.received)
 
 
-def expected(job: TrialJob) -> Tokens:
+def expected(job: TrialSetup) -> Tokens:
     """The tokens of a trial before anything is known, with the steps of the reference solution or of a drive."""
-    step = A_STEP.get(job.setup.agent, OTHER_STEP)
+    step = A_STEP.get(job.agent, OTHER_STEP)
     sent = _sent(job)
-    if isinstance(job, DriveJob):
-        steps, text = DRIVE_STEPS, DRIVE_SHARE * sent
+    if isinstance(job, EpisodeSetup):
+        steps, text = 1 + len(job.entry.half(job.half).moves), sent
     else:
-        steps, text = 1 + len(job.task.half(job.setup.half).moves), sent
+        steps, text = DRIVE_STEPS, DRIVE_SHARE * sent
     pictures = pictures_of(job)
     return Tokens(steps * (text + pictures * PICTURE), steps * step.received)
 
 
-def longest_question(job: TrialJob) -> int:
+def longest_question(job: TrialSetup) -> int:
     """Tokens of the longest question in a trial, without its pictures and functions."""
     sent = _sent(job)
-    return round(LONGEST * (DRIVE_SHARE * sent if isinstance(job, DriveJob) else sent))
+    return round(LONGEST * (DRIVE_SHARE * sent if isinstance(job, DriveSetup) else sent))
 
 
-def _sent(job: TrialJob) -> float:
+def _sent(job: TrialSetup) -> float:
     """Tokens of text that a step of a task sends."""
-    agent, prompt = job.setup.agent, job.setup.conditions.prompt
+    agent, prompt = job.agent, job.conditions.prompt
     if agent not in A_STEP:
         return OTHER_STEP.sent
     return A_STEP[agent].sent * BY_PROMPT[prompt.length] + len(instructions(prompt)) / CHARACTERS_PER_TOKEN

@@ -1,32 +1,34 @@
-"""The jobs of a plan: one trial each, on a task's half or on a drive."""
+"""A trial by name: what an evaluation runs, what its manifest and its row call it, and its limits."""
 
 from __future__ import annotations
 
 import hashlib
 import re
-from abc import ABC, abstractmethod
-from collections.abc import Hashable, Iterable, Mapping
+from abc import abstractmethod
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, Generic, TypeVar
+from typing import Annotated, Any
 
 from annotated_types import Ge, Gt, Le
 
+from automotive_cosim.agents import Agent
+from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import GeoInput
-from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.specification import MOST_STEPS
 from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.judged import JudgedSession
+from automotive_cosim.episode.observer import Observer
+from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.trace import canonical
-from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.answers import Answers
+from automotive_cosim.run.executor import Job
+from automotive_cosim.run.moments import JudgeInput
 from automotive_cosim.run.outside import EPISODE_S, STEP_S
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.sets import Split, Suite
-from automotive_cosim.tasking.split import split_of, split_of_seed
-from automotive_cosim.tasking.task import Task
-from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.traffic.fork import Simulations
 
 NO_MODEL = "none"
 WARM_UPS_S: Mapping[str, float] = {
@@ -103,35 +105,43 @@ class Limits:
         return self.wall_s + self.agent_s + self.model_s
 
 
-SetupT = TypeVar("SetupT", EpisodeSetup, DriveSetup)
+@dataclass(frozen=True, kw_only=True)
+class TrialSetup(Job):
+    """What one agent does once, by name: on a task's half (``EpisodeSetup``) or on a drive (``DriveSetup``).
 
+    The same trial gives the same trace.
+    """
 
-@dataclass(frozen=True, slots=True)
-class PlannedJob(ABC, Generic[SetupT]):
-    """One trial of a plan, of either kind."""
-
-    setup: SetupT
+    agent: str = ""
+    model: str = NO_MODEL
     repeat: int = 0
+    """Which run of the same it is."""
     limits: Limits = field(default_factory=Limits)
 
     @property
-    def model(self) -> str:
+    @abstractmethod
+    def seed(self) -> int:
+        """Seed of the traffic, and of everything that is drawn."""
+
+    @property
+    @abstractmethod
+    def conditions(self) -> Conditions:
+        """What the agent is given, and at what speed."""
+
+    @property
+    def asked_model(self) -> str:
         """The model, as given to ``make_agent``."""
-        return "rules" if self.setup.model == NO_MODEL else self.setup.model
+        return "rules" if self.model == NO_MODEL else self.model
 
     @property
-    def simulation(self) -> tuple[str, int]:
-        """The warm simulation that it starts from: scenario and seed."""
-        return self.scenario, self.setup.seed
+    @abstractmethod
+    def in_scenario(self) -> str:
+        """Name or folder of the scenario that it runs in."""
 
     @property
-    def warm_up_weight(self) -> float:
-        return warm_up_s(self.scenario) / WARM_UP_S
-
-    @property
-    def wall_s(self) -> float:
-        """Limit of its wall time."""
-        return self.limits.longest_s
+    @abstractmethod
+    def about(self) -> Json:
+        """What is run, by name, as the file of its road tells it."""
 
     @property
     @abstractmethod
@@ -139,175 +149,72 @@ class PlannedJob(ABC, Generic[SetupT]):
         """The public set that it belongs to."""
 
     @property
-    def _told(self) -> dict[str, Any]:
+    @abstractmethod
+    def instance(self) -> tuple[Hashable, ...]:
+        """What an instance is identified by; the same for every contestant."""
+
+    @abstractmethod
+    def planned(self) -> TrialRow:
+        """Its row, as far as it is known before it runs."""
+
+    @abstractmethod
+    def started(self, simulations: Simulations, agent: Agent, observer: Observer) -> JudgedSession:
+        """Its session, at the instant at which the agent takes over; whoever asks for it closes it.
+
+        Raises:
+            UserError: something in it does not exist.
+            InfrastructureError: the situation did not arise, or the road failed.
+        """
+
+    @abstractmethod
+    def row(self, session: Any, end: End, answers: Answers) -> TrialRow:
+        """Its row, once it is over; ``session`` is None if the agent never took over."""
+
+    @abstractmethod
+    def told(self, session: Any) -> Any:
+        """What the end of its trace tells besides the row; None if there is nothing to tell."""
+
+    @abstractmethod
+    def lines(self, session: Any, row: TrialRow, told: Any, thoughts: Sequence[Json]) -> list[Json]:
+        """Its trace: the steps, each with what the agent thought, then the result."""
+
+    @abstractmethod
+    def judged(self, session: Any) -> JudgeInput | None:
+        """The judge's input; None without a judgement."""
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """The warm simulation that it starts from: scenario and seed."""
+        return self.in_scenario, self.seed
+
+    @property
+    def warm_up_weight(self) -> float:
+        """How long the warm-up of its simulation takes, as a share of that of a large town."""
+        return warm_up_s(self.in_scenario) / WARM_UP_S
+
+    @property
+    def wall_s(self) -> float:
+        """Limit of its wall time."""
+        return self.limits.longest_s
+
+    @property
+    def named(self) -> Json:
         """What its row says of it before it runs, whatever its kind."""
-        setup = self.setup
-        return {
-            "id": self.id,
-            "scenario": self.scenario,
-            "agent": setup.agent,
-            "model": setup.model,
-            "conditions": setup.conditions,
-            "seed": setup.seed,
-            "repeat": self.repeat,
-            "split": self.split,
-        }
+        names = ("id", "agent", "model", "conditions", "seed", "repeat", "split")
+        return {"scenario": self.in_scenario} | {name: getattr(self, name) for name in names}
 
-    @property
-    @abstractmethod
-    def scenario(self) -> str:
-        """Name or folder of its scenario."""
-
-    @property
-    @abstractmethod
-    def id(self) -> str:
-        """Its id, which can be a file name."""
-
-    def named(self, *what: str, rest: Iterable[str]) -> str:
+    def id_of(self, *what: str, rest: Iterable[str]) -> str:
         """A file name from what is run, by whom and how: readable words, then a digest of everything.
 
         Args:
             what: what is run, which comes first.
             rest: what distinguishes it besides agent, model, seed, repeat and conditions.
         """
-        setup = self.setup
-        conditions: Conditions = setup.conditions
+        conditions = self.conditions
+        others = replace(conditions, geo=GeoInput.FULL).tags
         return file_name(
-            (
-                *what, setup.agent, setup.model, conditions.geo, f"s{setup.seed}", f"r{self.repeat}", *rest,
-                *replace(conditions, geo=GeoInput.FULL).tags,
-            )
-        )  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class EpisodeJob(PlannedJob[EpisodeSetup]):
-    """One episode of a plan."""
-
-    @property
-    def scenario(self) -> str:
-        """Name or folder of its scenario."""
-        return self.setup.scenario or self.task.half(self.setup.half).start.scenario
-
-    @property
-    def task(self) -> Task:
-        """The catalogue's entry."""
-        return CATALOGUE[self.setup.task]
-
-    @property
-    def split(self) -> Split:
-        """The set that it belongs to, by its seed and its phrasing."""
-        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out, redrawn=self.setup.redrawn)
-
-    @property
-    def kind(self) -> Hashable:
-        """The agent and its model, which determine how long it takes."""
-        return self.setup.agent, self.setup.model
-
-    @property
-    def situation(self) -> Hashable:
-        """The drive up to the hand-over, on which no agent acts."""
-        return replace(
-            self.setup,
-            agent="",
-            model="",
-            without=(),
-            conditions=Conditions(language=self.setup.conditions.language),
+            (*what, self.agent, self.model, conditions.geo, f"s{self.seed}", f"r{self.repeat}", *rest, *others)
         )
-
-    @property
-    def instance(self) -> Hashable:
-        """What an instance is identified by; the same for every contestant."""
-        return self.setup.task, self.setup.half, self.scenario, self.setup.seed, self.repeat
-
-    @property
-    def id(self) -> str:
-        """Its id, which can be a file name."""
-        return self._named(self.setup.half)
-
-    @property
-    def pair(self) -> str:
-        """Name that both halves of a pair share; empty for a task with one half."""
-        return self._named("pair") if self.task.second else ""
-
-    def planned(self) -> EpisodeRow:
-        """What is known about it before it runs."""
-        setup, task = self.setup, self.task
-        half = task.half(setup.half)
-        return EpisodeRow(
-            **self._told,
-            task=task.id,
-            half=setup.half,
-            pair=self.pair,
-            dimension=task.dimension,
-            module=task.module,
-            basis=half.basis,
-            suite=task.suite,
-            tags=tuple(sorted(task.tags)),
-            skills=tuple(sorted(task.skills)),
-            ability=task.ability,
-            declines=not half.moves,
-            held_out=setup.held_out,
-        )
-
-    def _named(self, half: str) -> str:
-        setup = self.setup
-        held_out = ["held_out"] if setup.held_out else []
-        redrawn = [f"redrawn{setup.redrawn}"] if setup.redrawn else []
-        return self.named(setup.task, half, rest=(setup.scenario or "own", *held_out, *redrawn))
-
-
-@dataclass(frozen=True, slots=True)
-class DriveJob(PlannedJob[DriveSetup]):
-    """One drive of a plan."""
-
-    limits: Limits = field(default_factory=lambda: Limits().of_drives)
-
-    @property
-    def scenario(self) -> str:
-        """Name or folder of its scenario."""
-        return self.setup.scenario or family_named(self.setup.family).scenario
-
-    @property
-    def split(self) -> Split:
-        """The set that it belongs to, by its seed."""
-        return split_of_seed(self.setup.seed)
-
-    @property
-    def situation(self) -> Hashable:
-        """A drive always begins."""
-        return self.id
-
-    @property
-    def kind(self) -> Hashable:
-        """Agent and model, which determine how long it takes; of agents without a model, the drive itself does."""
-        return "drive", self.setup.model, "" if self.setup.model == NO_MODEL else self.setup.agent
-
-    @property
-    def instance(self) -> Hashable:
-        """What an instance is identified by; the same for every contestant."""
-        return self.setup.family, self.scenario, self.setup.settings, self.setup.seed, self.repeat
-
-    @property
-    def id(self) -> str:
-        """Its id, which can be a file name."""
-        setup = self.setup
-        scenario = [setup.scenario] if setup.scenario else []
-        return self.named(setup.family, rest=(*scenario, *setup.settings.tags))
-
-    def planned(self) -> DriveTrialRow:
-        """What is known about it before it runs."""
-        setup = self.setup
-        return DriveTrialRow(
-            **self._told,
-            family=setup.family,
-            season=family_named(setup.family).season,
-            settings=setup.settings,
-        )
-
-
-TrialJob = EpisodeJob | DriveJob
-"""One trial of a plan."""
 
 
 def file_name(exactly: Iterable[str]) -> str:

@@ -15,7 +15,7 @@ from automotive_cosim.errors import ActionError, ModelError
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN, ChatMessage, ChatModel, ModelReply, ToolCall
 from automotive_cosim.models.local import Local
 from automotive_cosim.run.forecast import asks, longest_question, pictures_of
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 
 FILLER = "The car drives on along the avenue, and nothing has changed since. "
 ASKED = "Answer with the word OK."
@@ -23,7 +23,7 @@ CALLED = "Call the function `wait` once."
 WAIT = ToolCall("call00000", "wait", {"seconds": 1})
 
 
-def misfits(jobs: Iterable[TrialJob]) -> Iterator[str]:
+def misfits(jobs: Iterable[TrialSetup]) -> Iterator[str]:
     """What each model of some trials does not take of their questions; nothing for those that take them.
 
     Raises:
@@ -31,17 +31,16 @@ def misfits(jobs: Iterable[TrialJob]) -> Iterator[str]:
     """
     tried = set()
     for job in jobs:
-        setup = job.setup
-        if not asks(job.model):
+        if not asks(job.asked_model):
             continue
-        longest, size = longest_question(job), setup.conditions.screen if pictures_of(job) else None
-        key = setup.agent, job.model, longest, size
+        longest, size = longest_question(job), job.conditions.screen if pictures_of(job) else None
+        key = job.agent, job.asked_model, longest, size
         if key in tried:
             continue
         tried.add(key)
-        model = model_of(setup.agent, job.model, settings=AgentSettings(setup.conditions))
+        model = model_of(job.agent, job.asked_model, settings=AgentSettings(job.conditions))
         picture = None if size is None else _blank(size.width, size.height)
-        if model is not None and (found := misfit(model, longest, picture, calls=setup.agent == Caller.name)):
+        if model is not None and (found := misfit(model, longest, picture, calls=job.agent == Caller.name)):
             yield found
 
 

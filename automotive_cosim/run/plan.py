@@ -31,7 +31,7 @@ from automotive_cosim.interface.trace import plain
 from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, EpisodeJob, Limits, TrialJob, digest
+from automotive_cosim.run.jobs import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
 from automotive_cosim.scenarios import open_scenario
@@ -67,7 +67,7 @@ class PlannedTrial:
     settings: DriveSettings = AS_SCRIPTED
     """What is set otherwise than the drive's script has it."""
 
-    def job(self, agent: str, model: str, repeat: int, limits: Limits, spare: tuple[int, ...]) -> TrialJob:
+    def job(self, agent: str, model: str, repeat: int, limits: Limits, spare: tuple[int, ...]) -> TrialSetup:
         """The trial of one agent.
 
         Raises:
@@ -75,20 +75,24 @@ class PlannedTrial:
         """
         if bool(self.task) == bool(self.drive):
             raise UserError("an entry of [[trials]] names a task or a drive; give one of the two")
-        named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
+        named: dict[str, Any] = {
+            "agent": agent,
+            "model": model if agent in MODELLED or agent == HUMAN else NO_MODEL,
+            "seed": self.seed,
+            "conditions": self.conditions,
+            "repeat": self.repeat + repeat,
+        }
         if self.drive:
             family_named(self.drive)
-            setup = DriveSetup(
+            most = limits.of_drives
+            return DriveSetup(
                 self.drive,
-                self.seed,
-                self.conditions,
-                self.scenario,
-                self.settings,
-                limits.drive_steps,
-                agent=agent,
-                model=named,
+                scenario=self.scenario,
+                settings=self.settings,
+                max_steps=most.steps,
+                limits=most,
+                **named,
             )
-            return DriveJob(setup, self.repeat + repeat, limits.of_drives)
         if self.settings != AS_SCRIPTED:
             raise UserError(f"{self.task}: {self.settings.words} can be set for drives alone; omit it")
         if self.task not in CATALOGUE:
@@ -97,21 +101,18 @@ class PlannedTrial:
         half = task.half(self.half)
         if self.conditions.language not in task.languages:
             raise UserError(f"{self.task} has no phrasings in {languages_in_words([self.conditions.language])}")
-        scenario = None if self.scenario in ("", half.start.scenario) else self.scenario
-        episode = EpisodeSetup(
+        scenario = None if self.scenario in ("", half.start.scenario) else self.scenario  # a half may move it
+        return EpisodeSetup(
             task.id,
             self.half,
             scenario,
-            agent=agent,
-            model=named,
-            seed=self.seed,
             max_steps=limits.hard_steps if task.suite is Suite.HARD else limits.steps,
             max_sim_s=limits.sim_s,
-            conditions=self.conditions,
             held_out=self.held_out,
             spare_traffic=spare if scenario is None or scenario in task.runs_in else (),
+            limits=limits,
+            **named,
         )
-        return EpisodeJob(episode, self.repeat + repeat, limits)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +161,7 @@ class Plan(EvaluationSettings):
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
         remote: dict[str, Agent] = {}
-        for agent, model, conditions in {(job.setup.agent, job.model, job.setup.conditions) for job in self.jobs()}:
+        for agent, model, conditions in {(job.agent, job.asked_model, job.conditions) for job in self.jobs()}:
             if agent == HUMAN:
                 raise UserError(
                     "agent 'human' needs a person; use `automotive-cosim serve --play`, or `run --agent human`"
@@ -179,7 +180,7 @@ class Plan(EvaluationSettings):
                     lacks.append(str(error))
         return tuple(dict.fromkeys(sorted(lacks)))
 
-    def jobs(self) -> tuple[TrialJob, ...]:
+    def jobs(self) -> tuple[TrialSetup, ...]:
         """Every trial, grouped by warm simulation, then by instance, whose contestants stand next to each other:
         wherever a run stops, they can be compared on all that is complete.
 
@@ -191,7 +192,8 @@ class Plan(EvaluationSettings):
         """
         if (most := self.most_runs()) > MOST_RUNS:
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
-        every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives(), *self._single())
+        who = product(self.agents, self.models, (*self._unfolded(), *self.trials), range(self.repeats))
+        every = (self._job(agent, model, trial, repeat) for agent, model, trial, repeat in who)
         jobs = {job.id: job for job in every if self.split == BOTH or self.split == job.split}
         return tuple(sorted(jobs.values(), key=_place))
 
@@ -200,9 +202,9 @@ class Plan(EvaluationSettings):
         lists = (self.agents, self.models, [*self._placed(), *self._driven()], self.seeds, *lists_of(self).values())
         return prod(map(len, lists)) * self.repeats
 
-    def episodes(self) -> tuple[EpisodeJob, ...]:
+    def episodes(self) -> tuple[EpisodeSetup, ...]:
         """Those of the jobs that are episodes on tasks."""
-        return tuple(job for job in self.jobs() if isinstance(job, EpisodeJob))
+        return tuple(job for job in self.jobs() if isinstance(job, EpisodeSetup))
 
     @property
     def languages(self) -> tuple[Language, ...]:
@@ -268,53 +270,29 @@ class Plan(EvaluationSettings):
         """Each family of drives with each scenario that it runs in; empty for its own."""
         return list(product(families_named(self.drives), self.scenarios or ("",)))
 
-    def _drives(self) -> Iterator[DriveJob]:
-        for agent, model, (family, scenario), seed, conditions, repeat in product(
-            self.agents, self.models, self._driven(), self.seeds, combined(self), range(self.repeats)
-        ):
-            named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
-            most = self.limits.drive_steps
-            setup = DriveSetup(family, seed, conditions, scenario, self.settings, most, agent=agent, model=named)
-            yield DriveJob(setup, repeat, self.limits.of_drives)
-
-    def _single(self) -> Iterator[TrialJob]:
-        for agent, model, trial, repeat in product(self.agents, self.models, self.trials, range(self.repeats)):
-            job = trial.job(agent, model, repeat, self.limits, self.spare_traffic)
-            if self.rephrase and isinstance(job, EpisodeJob):
-                job = replace(job, setup=replace(job.setup, redrawn=repeat))
-            yield job
-
-    def _episodes(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, conditions, repeat in product(
-            self.agents,
-            self.models,
-            self._placed(),
-            self.seeds,
-            combined(self),
-            range(self.repeats),
-        ):
-            if task.needs_picture and conditions.hides_pictures:
-                continue
-            for half in task.halves:
-                is_own = scenario == task.half(half).start.scenario  # a half may move it to another place
-                setup = EpisodeSetup(
-                    task.id,
-                    half,
-                    None if is_own else scenario,
-                    agent=agent,
-                    model=model if agent in MODELLED or agent == HUMAN else NO_MODEL,
+    def _unfolded(self) -> Iterator[PlannedTrial]:
+        """The trials that the lists stand for."""
+        for (task, place), seed, conditions in product(self._placed(), self.seeds, combined(self)):
+            for half in () if task.needs_picture and conditions.hides_pictures else task.halves:
+                yield PlannedTrial(
+                    task=task.id,
+                    half=half,
+                    scenario=place or "",
                     seed=seed,
-                    max_steps=self.limits.hard_steps if task.suite is Suite.HARD else self.limits.steps,
-                    max_sim_s=self.limits.sim_s,
-                    conditions=conditions,
                     held_out=self.held_out,
-                    redrawn=repeat if self.rephrase else 0,
-                    spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
+                    conditions=conditions,
                 )
-                yield EpisodeJob(setup, repeat, self.limits)
+        for (family, place), seed, conditions in product(self._driven(), self.seeds, combined(self)):
+            yield PlannedTrial(
+                drive=family, scenario=place, seed=seed, conditions=conditions, settings=self.settings
+            )
+
+    def _job(self, agent: str, model: str, trial: PlannedTrial, repeat: int) -> TrialSetup:
+        job = trial.job(agent, model, repeat, self.limits, self.spare_traffic)
+        return replace(job, redrawn=repeat) if self.rephrase and isinstance(job, EpisodeSetup) else job
 
 
-def _place(job: TrialJob) -> tuple[str, str, str]:
+def _place(job: TrialSetup) -> tuple[str, str, str]:
     return digest(job.simulation), digest(plain(job.instance)), digest(job.id)
 
 

@@ -7,23 +7,19 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from datetime import datetime
 from io import FileIO
 from pathlib import Path
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
 from automotive_cosim.cockpit.actions import action_in_words
-from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, Json
-from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, screenshot
@@ -37,13 +33,12 @@ from automotive_cosim.formats.writing import (
     write_whole,
 )
 from automotive_cosim.interface.trace import STATES, digests
-from automotive_cosim.run.collect import Collector
-from automotive_cosim.run.drive import DriveRecord
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup
-from automotive_cosim.run.jobs import EpisodeJob, TrialJob
-from automotive_cosim.run.moments import JudgeInput
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.jobs import TrialSetup
+from automotive_cosim.run.moments import JudgeInput, write_judged
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.store import write_trace
 from automotive_cosim.run.trial_folder import target
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import STAMPED, installed
@@ -51,28 +46,6 @@ from automotive_cosim.run.versions import STAMPED, installed
 PICTURE_QUALITY = 85
 LARGE = frozenset({*STATES, "weather", "gps", "connectivity", "events"})
 """What a line of a step has only if the whole state is written."""
-
-AnyTrialObserver = TrialObserver[JudgedSession, EpisodeResult | DriveRecord]
-"""Observes a trial of either kind."""
-
-
-class TrialRecord(Protocol):
-    """What is kept of a trial of either kind."""
-
-    @property
-    def row(self) -> TrialRow:
-        """Its row, without the fields that a batch adds."""
-        ...
-
-    @property
-    def lines(self) -> Sequence[Json]:
-        """Its trace: the steps, then the result; nothing if the agent never took over."""
-        ...
-
-    @property
-    def judged(self) -> JudgeInput | None:
-        """The judge's input; None without a judgement."""
-        ...
 
 
 def default_folder(setup: EpisodeSetup, ending: str = "") -> Path:
@@ -109,28 +82,31 @@ def check_folder(folder: Path, *, force: bool) -> None:
         ) from error
 
 
-class Recorder(AnyTrialObserver):
-    """Makes the record of a trial and, if it has a folder, writes it down step by step."""
+class Recorder(TrialObserver):
+    """Keeps the trace of a trial and, if it has a folder, writes it down step by step."""
 
     def __init__(
-        self, job: TrialJob, folder: Path | None, arguments: Json | None = None, *, whole: bool = False
+        self, trial: TrialSetup, folder: Path | None, arguments: Json | None = None, *, whole: bool = False
     ) -> None:
         """Nothing is written before the agent takes over.
 
         Args:
-            job: what is run.
+            trial: what is run.
             folder: the trial's, which may not exist yet; None keeps no folder.
             arguments: the command's, of a trial that it runs alone; None in an evaluation, whose manifest has what
                 is the same for all its trials.
             whole: write the whole state after each step.
         """
         self.folder = folder
-        self.record: TrialRecord | None = None
-        """Once the trial is over."""
-        self._job = job
+        self.lines: list[Json] = []
+        """The trace, once the trial is over: the steps, then the result; nothing if there is nothing to judge."""
+        self.judged: JudgeInput | None = None
+        """The judge's input, once the trial is over; None without a judgement."""
+        self._trial = trial
+        self._session: JudgedSession | None = None
+        self._thoughts: list[Json] = []
         self._arguments = arguments
         self._whole = whole
-        self._collector = Collector(job) if isinstance(job, EpisodeJob) else None
         self._lines: FileIO | None = None
         self._begun_s = 0.0
         self._pictured: tuple[int, npt.NDArray[np.uint8]] | None = None
@@ -142,38 +118,39 @@ class Recorder(AnyTrialObserver):
         """Whether the folder has been created."""
         return self._lines is not None
 
-    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        if self._collector is not None:
-            self._collector.moved(moment, cockpit)
-
     def begun(self, session: JudgedSession, shot: Shot) -> None:
         """Creates the folder and writes step 0."""
-        self._begun_s = shot.step.moment.time_s
-        if self._collector is not None and isinstance(session, Episode):
-            self._collector.begun(session, shot)
+        self._begun_s, self._session = shot.step.moment.time_s, session
         if self.folder is not None:
             self._lines = _fresh(self.folder)
             self._write({"manifest": self._manifest()})
-            self._add(shot)
+        self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
         """Adds a step."""
-        if self._collector is not None:
-            self._collector.stepped(shot)
+        self._thoughts.append({"thought": shot.thought, "stages": [stage.as_json() for stage in shot.stages]})
         self._add(shot)
 
-    def finished(self, result: EpisodeResult | DriveRecord) -> None:
-        """Makes the record, and completes the folder."""
-        made: TrialRecord
-        if isinstance(result, DriveRecord):
-            made = result
-        else:
-            assert self._collector is not None
-            made = self._collector.record(result)
-        self.record = made
+    def finished(self, row: TrialRow, told: Any) -> None:
+        """Makes the trace, and completes the folder."""
+        if self._session is None or told is None:
+            return
+        self.lines = self._trial.lines(self._session, row, told, self._thoughts)
+        self.judged = self._trial.judged(self._session)
         self.close()
         if self.has_begun:
-            self._write({"row": as_json(made.row), **made.lines[-1], "manifest": self._manifest()})
+            self._write({"row": as_json(row), **self.lines[-1], "manifest": self._manifest()})
+
+    def keep_in(self, evaluation: Path) -> None:
+        """Writes the trace and the judge's input into the folder of an evaluation.
+
+        Raises:
+            OSError: they cannot be written.
+        """
+        if self.lines:
+            write_trace(evaluation, self._trial.id, self.lines)
+        if self.judged is not None:
+            write_judged(evaluation, self._trial.id, self.judged)
 
     def close(self) -> None:
         """Closes the files, also of a trial that was broken off; may be called again."""
@@ -197,7 +174,7 @@ class Recorder(AnyTrialObserver):
                 Image.fromarray(shot.screenshot).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
             self._pictured = step.number, shot.screenshot
         told, begins = step.as_json(), "hand-over"
-        if self._collector is None:
+        if shot.session.observation.on_watch:
             told["context"], begins = shot.session.observation.context or "", "departure"  # as the agent was told
         line = told | {
             "at_s": round(step.moment.time_s - self._begun_s, 2),
@@ -205,8 +182,7 @@ class Recorder(AnyTrialObserver):
             "target": target(step.action.index if step.action else None, shot.seen),
             "speed_kmh": round(step.moment.driving.speed_mps * KMH_PER_MPS, 1),
             "picture": self._pictured[0],
-            "thought": shot.thought,
-            "stages": [stage.as_json() for stage in shot.stages],
+            **self._thoughts[-1],
             "sha256": digests(told),
         }
         kept = line if self._whole else {name: value for name, value in line.items() if name not in LARGE}
@@ -217,7 +193,7 @@ class Recorder(AnyTrialObserver):
         write_whole(self.folder / TRIAL, json.dumps(told, indent=1) + "\n")
 
     def _manifest(self) -> Json:
-        setup = self._job.setup
+        setup = self._trial
         if self._arguments is None:
             return {"setup": asdict(setup)}
         return {

@@ -29,19 +29,20 @@ from automotive_cosim.formats.layout import TRIAL
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import canonical, digests
-from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.coverage import unit_of
-from automotive_cosim.run.drive import DriveSetup, run_drive
+from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode import EpisodeSetup, read_setup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup, read_setup
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.record import TrialRecord
+from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.run.store import read_evaluation, read_trace
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.run.trial_folder import is_trial, read_steps, read_trial
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations
 
@@ -123,31 +124,31 @@ def _single(folder: Path, trial: str) -> list[Compared]:
         raise UserError(f"{folder} holds a single trial; omit {trial!r}")
     told, stored = read_trial(folder), read_steps(folder)
     job, row = _job(folder, told), (told.get("result") or {}) | (told.get("row") or {})
-    channels = frozenset(map(Channel, row["channels"])) if "channels" in row else _channels(job.setup)
+    channels = frozenset(map(Channel, row["channels"])) if "channels" in row else _channels(job)
     return _again(job, stored, channels, row.get("agent_error"))
 
 
-def _job(folder: Path, told: Json) -> TrialJob:
+def _job(folder: Path, told: Json) -> TrialSetup:
     """What was run, by the folder of a trial."""
     values = (told.get("manifest") or {}).get("setup")
     if values is None:
         raise UserError(f"{folder} does not say what was run; record the trial again")
     where = str(folder / TRIAL)
     if "family" not in values:
-        return EpisodeJob(read_setup(values, where))
+        return read_setup(values, where)
     setup = checked(DriveSetup, values, lambda steps: (where, dotted(steps)))
     if (folder / TRIAL).is_file() or setup.scenario != family_named(setup.family).scenario:
-        return DriveJob(setup)
-    return DriveJob(replace(setup, scenario=""))  # earlier records named a family's own scenario too
+        return setup
+    return replace(setup, scenario="")  # earlier records named a family's own scenario too
 
 
 def _again(
-    job: TrialJob, stored: Sequence[Json], channels: frozenset[Channel], failure: str | None
+    job: TrialSetup, stored: Sequence[Json], channels: frozenset[Channel], failure: str | None
 ) -> list[Compared]:
-    return compare(stored, [line for line in played(job, stored, channels, failure).lines if "step" in line])
+    return compare(stored, [line for line in played(job, stored, channels, failure)[1].lines if "step" in line])
 
 
-def _channels(setup: EpisodeSetup | DriveSetup) -> frozenset[Channel]:
+def _channels(setup: TrialSetup) -> frozenset[Channel]:
     """The channels that its agent was given; no model is needed."""
     if setup.agent in PROFILES:
         without = setup.without if isinstance(setup, EpisodeSetup) else ()
@@ -163,14 +164,14 @@ def _channels(setup: EpisodeSetup | DriveSetup) -> frozenset[Channel]:
 
 
 def played(
-    job: TrialJob,
+    job: TrialSetup,
     stored: Sequence[Json],
     channels: frozenset[Channel],
     failure: str | None = None,
     *,
     simulations: Simulations | None = None,
-) -> TrialRecord:
-    """Plays the actions of a stored trial in the same setup; what an evaluation would keep of it.
+) -> tuple[TrialRow, Recorder]:
+    """Plays the actions of a stored trial in the same setup; its row, and what an evaluation would keep of it.
 
     Args:
         job: the trial.
@@ -183,14 +184,11 @@ def played(
         UserError: something in the setup does not exist.
         InfrastructureError: the simulation failed.
     """
-    player = Player(stored[1:], channels, failure)
-    if isinstance(job, DriveJob):
-        return run_drive(job.planned(), job.setup, player, simulations=simulations)
-    collector = Collector(job)
-    result = run_episode(job.setup, player, (collector,), simulations=simulations)
-    if result.error is not None:
-        raise InfrastructureError(result.error)
-    return collector.record(result)
+    recorder = Recorder(job, None)
+    row = run_trial(job, Player(stored[1:], channels, failure), (recorder,), simulations=simulations)
+    if row.error is not None:
+        raise InfrastructureError(row.error)
+    return row, recorder
 
 
 def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:

@@ -41,7 +41,7 @@ AHEAD_M = 200.0
 """Lanes come into sight this much before they can have a vehicle on them; new ones are sought as often."""
 
 
-class RoadRecorder(TrialObserver[JudgedSession, object]):
+class RoadRecorder(TrialObserver):
     """Writes the road of a trial into its record's folder while it runs."""
 
     looks = True
@@ -88,7 +88,7 @@ class RoadRecorder(TrialObserver[JudgedSession, object]):
                 self._writer.second(moment.driving, RoadFacts.of(moment), snapshot)
         self._before = []
 
-    def finished(self, result: object) -> None:
+    def finished(self, row: object, told: object) -> None:
         """Adds the baseline run of a judged session, and completes the file."""
         if self._writer is not None and self._session is not None and self._session.is_judged:
             self._writer.baseline(self._session.baseline_moments)

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Any
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.moment import Moment
@@ -80,10 +79,10 @@ def warming_up(done_s: float, total_s: float) -> None:
     )
 
 
-class StageObserver(TrialObserver[Any, Any]):
-    """Tells the stages of a trial, the agent's by its steps."""
+class StageObserver(TrialObserver):
+    """Tells the stages of a trial, the agent's by its steps or, on a drive, by the time."""
 
-    _has_begun = False
+    _session: Session | None = None
 
     def loading(self, scenario: Scenario) -> None:
         doing(f"loading {scenario.name}", is_warm_up=True)
@@ -92,30 +91,24 @@ class StageObserver(TrialObserver[Any, Any]):
         warming_up(done_s, total_s)
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        if not self._has_begun:
+        if self._session is None:
             doing("driving to the hand-over")
-
-    def begun(self, session: Any, shot: Shot) -> None:
-        self._has_begun = True
-        doing("agent at work", "step 0")
-
-    def stepped(self, shot: Shot) -> None:
-        doing("agent at work", f"step {len(shot.session.steps) - 1}")
-
-
-class DriveStageObserver(StageObserver):
-    """Tells the stages of a drive, the agent's by its time."""
-
-    _session: Session | None = None
-
-    def begun(self, session: Session, shot: Shot) -> None:
-        self._session = session
-        doing("agent on watch", share=0.0)
-
-    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        if self._session is not None and (most_s := self._session.setup.max_sim_s):
+        elif self._watches and (most_s := self._session.setup.max_sim_s):
             done_s = min(self._session.seconds, most_s)
             doing("agent on watch", f"{done_s:.0f} of {most_s:.0f} s", share=done_s / most_s)
 
+    def begun(self, session: Session, shot: Shot) -> None:
+        self._session = session
+        if self._watches:
+            doing("agent on watch", share=0.0)
+        else:
+            doing("agent at work", "step 0")
+
     def stepped(self, shot: Shot) -> None:
-        """See ``TrialObserver.stepped``; the time says more."""
+        if not self._watches:
+            doing("agent at work", f"step {len(shot.session.steps) - 1}")
+
+    @property
+    def _watches(self) -> bool:
+        """Whether it is a drive, of which the time says more than the step."""
+        return self._session is not None and self._session.observation.on_watch

@@ -12,18 +12,16 @@ from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.formats.layout import PICTURES
 from automotive_cosim.formats.writing import beneath
 from automotive_cosim.run.budget import Metered, MeterHandle
-from automotive_cosim.run.drive import run_drive
-from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.executor import Runner, failed_by
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import DriveJob, Limits, TrialJob
-from automotive_cosim.run.moments import write_judged
+from automotive_cosim.run.jobs import Limits, TrialSetup
+from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
-from automotive_cosim.run.record import AnyTrialObserver, Recorder
+from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.stage import DriveStageObserver, StageObserver
-from automotive_cosim.run.store import write_trace
+from automotive_cosim.run.stage import StageObserver
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
@@ -32,14 +30,14 @@ WARM = 2
 
 
 @contextmanager
-def trials(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[TrialJob, TrialRow]]:
+def trials(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[TrialSetup, TrialRow]]:
     """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share."""
     with closing(Simulations(count_limit=WARM)) as simulations, closing(ForkServer()) as fork_server:
         yield lambda job, folder: run_job(job, folder, pictures, simulations, fork_server, meter)
 
 
 def run_job(
-    job: TrialJob,
+    job: TrialSetup,
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
@@ -56,11 +54,11 @@ def run_job(
 
 def run_with(
     agent: AbstractContextManager[Agent],
-    job: TrialJob,
+    job: TrialSetup,
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
-    observers: Sequence[AnyTrialObserver] = (),
+    observers: Sequence[TrialObserver] = (),
 ) -> TrialRow:
     """Runs one trial, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
@@ -76,51 +74,28 @@ def run_with(
         OSError: trace or pictures cannot be written.
     """
     kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
-    recorder = Recorder(job, kept)
+    recorder, everyone = Recorder(job, kept), [*observers, StageObserver()]
     try:
-        with agent as acting:
-            _run(acting, job, recorder, simulations, observers)
+        with ExitStack() as ends:
+            everyone.insert(-1, ends.enter_context(closing(recorder)))
+            if kept is not None:
+                everyone.append(ends.enter_context(closing(RoadRecorder(kept, job.about))))
+            row = run_trial(job, ends.enter_context(agent), everyone, simulations=simulations)
     except Exception as error:  # must not end the evaluation; it is counted and listed
-        row: TrialRow = failed_by(job, error)
-        return row
-    record = recorder.record
-    assert record is not None, "it is over"
-    if record.lines:
-        write_trace(folder, job.id, record.lines)
-        if record.judged is not None:
-            write_judged(folder, job.id, record.judged)
-    if pictures is Pictures.FAILURES and record.row.has_succeeded:
+        ended: TrialRow = failed_by(job, error)
+        return ended
+    recorder.keep_in(folder)
+    if pictures is Pictures.FAILURES and row.has_succeeded:
         recorder.discard()
-    return record.row
-
-
-def _run(
-    agent: Agent,
-    job: TrialJob,
-    recorder: Recorder,
-    simulations: Simulations,
-    observers: Sequence[AnyTrialObserver],
-) -> None:
-    everyone: list[AnyTrialObserver] = [*observers, recorder]
-    with ExitStack() as ends:
-        ends.enter_context(closing(recorder))
-        if recorder.folder is not None:
-            everyone.append(ends.enter_context(closing(RoadRecorder(recorder.folder, job.setup.about))))
-        if isinstance(job, DriveJob):
-            everyone.append(DriveStageObserver())
-            run_drive(job.planned(), job.setup, agent, simulations=simulations, observers=everyone)
-        else:
-            everyone.append(StageObserver())
-            run_episode(job.setup, agent, everyone, simulations=simulations)
+    return row
 
 
 def agent_of(
-    job: TrialJob, fork_server: ForkServer, meter: MeterHandle | None = None
+    job: TrialSetup, fork_server: ForkServer, meter: MeterHandle | None = None
 ) -> AbstractContextManager[Agent]:
     """The agent of a job; see ``agent_for``."""
-    setup = job.setup
-    settings = AgentSettings(setup.conditions, seed=setup.seed, instructions=instructions(setup.conditions.prompt))
-    return agent_for(setup.agent, job.model, settings, job.limits, fork_server, meter)
+    settings = AgentSettings(job.conditions, seed=job.seed, instructions=instructions(job.conditions.prompt))
+    return agent_for(job.agent, job.asked_model, settings, job.limits, fork_server, meter)
 
 
 @contextmanager

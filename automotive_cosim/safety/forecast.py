@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.forecast import CostForecast, Range, forecast
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.safety.samplers import make_sampler
 from automotive_cosim.safety.space import Space
@@ -31,7 +31,7 @@ def search_forecast(space: Space, plan: Plan, points: int, workers: int = 1) -> 
         workers: how many run in parallel; 1 for a search whose points depend on each other.
     """
     drawn = make_sampler("random", space, points, 0)
-    jobs: dict[str, TrialJob] = {}
+    jobs: dict[str, TrialSetup] = {}
     for point in (space.nominal, *(drawn.ask()[0] for _ in range(min(points, MOST_LAID)))):
         with suppress(UserError):  # a combination that cannot be run costs nothing
             job = job_of(plan, trial_of(point))

@@ -16,7 +16,7 @@ from automotive_cosim.formats.toml import dotted
 from automotive_cosim.run import worker
 from automotive_cosim.run.batch import FINAL_KINDS, Progress, note_spent, run_jobs, spent_before
 from automotive_cosim.run.executor import Executor, Runner
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import Plan, PlannedTrial
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.rows import kind_of
@@ -62,7 +62,7 @@ def check_space(space: Space, plan: Plan) -> None:
     job_of(plan, trial_of(space.nominal))
 
 
-def job_of(plan: Plan, trial: PlannedTrial) -> TrialJob:
+def job_of(plan: Plan, trial: PlannedTrial) -> TrialSetup:
     """The job of a trial for the plan's agent.
 
     Raises:
@@ -79,7 +79,7 @@ class Trying:
 
     plan: Plan
     store: Store[TrialRow]
-    runner: Runner[TrialJob, TrialRow]
+    runner: Runner[TrialSetup, TrialRow]
     space: Space
     limit: SearchLimit
     executor: Executor
@@ -113,7 +113,7 @@ class Trying:
             self._add(trial)
         return outcome_of(row, self.space.rule)
 
-    def _run(self, job: TrialJob) -> TrialRow:
+    def _run(self, job: TrialSetup) -> TrialRow:
         if refusal := self.stop or self.limit.refusal():
             raise BudgetSpentError(refusal)
         since_s = time.monotonic()
@@ -129,7 +129,7 @@ class Trying:
         Raises:
             as ``run.batch.run_jobs``.
         """
-        jobs: dict[str, TrialJob] = {}
+        jobs: dict[str, TrialSetup] = {}
         trials: dict[str, PlannedTrial] = {}
         for point in points:
             with suppress(UserError):
@@ -157,7 +157,7 @@ def trying(
     space: Space,
     plan: Plan,
     folder: Path,
-    runner: Runner[TrialJob, TrialRow] | None = None,
+    runner: Runner[TrialSetup, TrialRow] | None = None,
     *,
     executor: Executor = Processes(),  # noqa: B008, frozen
     budget: SearchBudget = SearchBudget(),  # noqa: B008, frozen

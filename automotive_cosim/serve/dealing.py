@@ -18,7 +18,7 @@ from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import read_toml
-from automotive_cosim.run.jobs import EpisodeJob
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.plan import Plan, choose
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.serve.played import check_code_name, people_plan
@@ -56,7 +56,7 @@ class PeoplePlan:
             open_scenario(self.scenario)
         plan = people_plan(choose(self.tasks), self.people, sorted(set(self.seeds)), scenario=self.scenario)
         units = {_unit(job) for job in plan.episodes()}
-        if len(units) < 2 and any(job.task.second for job in plan.episodes()):
+        if len(units) < 2 and any(job.entry.second for job in plan.episodes()):
             raise UserError("a single pair would be dealt with both halves in a row; add another task or seed")
         if not units:
             raise UserError(f"none of these tasks runs in {self.scenario}; choose other tasks or another scenario")
@@ -73,8 +73,8 @@ def read_study(path: Path) -> PeoplePlan:
 
 
 def deal(
-    jobs: Sequence[EpisodeJob], people: Sequence[str], order_seed: int
-) -> Mapping[str, tuple[EpisodeJob, ...]]:
+    jobs: Sequence[EpisodeSetup], people: Sequence[str], order_seed: int
+) -> Mapping[str, tuple[EpisodeSetup, ...]]:
     """What each person plays, in order.
 
     Args:
@@ -85,9 +85,9 @@ def deal(
     halves: dict[tuple[str, str, int], list[str]] = {}
     found = {}
     for job in jobs:
-        found[job.setup.model, _unit(job), job.setup.half] = job
-        if job.setup.half not in halves.setdefault(_unit(job), []):
-            halves[_unit(job)].append(job.setup.half)
+        found[job.model, _unit(job), job.half] = job
+        if job.half not in halves.setdefault(_unit(job), []):
+            halves[_unit(job)].append(job.half)
     units = sorted(halves)
     np.random.default_rng([order_seed, 0]).shuffle(units)
     turned = {unit: _half_of_them(len(people), order_seed, number) for number, unit in enumerate(units, 1)}
@@ -136,6 +136,6 @@ def _half_of_them(people: int, order_seed: int, unit: int) -> list[int]:
     return drawn
 
 
-def _unit(job: EpisodeJob) -> tuple[str, str, int]:
+def _unit(job: EpisodeSetup) -> tuple[str, str, int]:
     """What both halves of a pair share."""
-    return job.setup.task, job.setup.scenario or "", job.setup.seed
+    return job.task, job.scenario or "", job.seed

@@ -30,13 +30,15 @@ from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
-from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
-from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, EpisodeJob, TrialJob
-from automotive_cosim.run.observer import Shot
-from automotive_cosim.run.record import AnyTrialObserver, Recorder, default_folder, stamped_folder
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.jobs import HUMAN, NO_MODEL, TrialSetup
+from automotive_cosim.run.observer import Shot, TrialObserver
+from automotive_cosim.run.record import Recorder, default_folder, stamped_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
+from automotive_cosim.run.trial import run_trial
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
 from automotive_cosim.serve.played import (
@@ -97,7 +99,7 @@ class PlayScene:
     """Simulated seconds per second."""
 
 
-class Game(AnyTrialObserver):
+class Game(TrialObserver):
     """One person's episodes, one at a time. Any method may be called from any thread."""
 
     def __init__(self, folder: Path, scenario: str | None = None, simulations: Simulations | None = None) -> None:
@@ -152,7 +154,7 @@ class Game(AnyTrialObserver):
             max_sim_s=MOST_S,
         )  # fmt: skip
         folder = self._folder / default_folder(setup).name
-        self._begin(Person(setup.model), lambda: self._practise(EpisodeJob(setup), folder))
+        self._begin(Person(setup.model), lambda: self._practise(setup, folder))
 
     def drive(self, family: str, seed: int, name: str, *, practice: bool) -> None:
         """Begins a drive.
@@ -172,11 +174,11 @@ class Game(AnyTrialObserver):
         if practice:
             setup = DriveSetup(family, seed, agent=HUMAN, model=name or NO_MODEL)
             folder = self._folder / stamped_folder(f"{family}-{HUMAN}-seed{seed}").name
-            self._begin(Person(setup.model), lambda: self._practise(DriveJob(setup), folder))
+            self._begin(Person(setup.model), lambda: self._practise(setup, folder))
             return
         self.begin(self._drives.drive(family, seed, name), self._drives.folder, self._drives.keep)
 
-    def begin(self, job: TrialJob, folder: Path, keep: Callable[[Any], None]) -> None:
+    def begin(self, job: TrialSetup, folder: Path, keep: Callable[[Any], None]) -> None:
         """Begins a trial that counts.
 
         Args:
@@ -187,7 +189,7 @@ class Game(AnyTrialObserver):
         Raises:
             UserError: one is running.
         """
-        self._begin(Person(job.setup.model, counts=True), lambda: self._count(job, folder, keep))
+        self._begin(Person(job.model, counts=True), lambda: self._count(job, folder, keep))
 
     @property
     def is_running(self) -> bool:
@@ -317,17 +319,14 @@ class Game(AnyTrialObserver):
         except Exception as error:
             self._tell(state=PlayState.FAILED, error=str(error) or type(error).__name__)
 
-    def _practise(self, job: TrialJob, folder: Path) -> None:
+    def _practise(self, job: TrialSetup, folder: Path) -> None:
         """Plays a trial and records it as ``run`` and ``drive`` do."""
-        is_episode, simulations = isinstance(job, EpisodeJob), self._simulations
-        recorder, road = Recorder(job, folder, {}, whole=is_episode), RoadRecorder(folder, job.setup.about)
-        both = self, recorder, road  # the person first
+        is_episode = isinstance(job, EpisodeSetup)
+        recorder, road = Recorder(job, folder, {}, whole=is_episode), RoadRecorder(folder, job.about)
+        everyone = (self, recorder, road, *([Film(folder)] if is_episode else []))  # the person first
         with suppress(PersonLeftError), closing(recorder), closing(road):
-            if isinstance(job, EpisodeJob):
-                run_episode(job.setup, self._person, (*both, Film(folder)), simulations=simulations)
-            else:
-                run_drive(job.planned(), job.setup, self._person, simulations=simulations, observers=both)
-        if not recorder.has_begun:
+            run_trial(job, self._person, everyone, simulations=self._simulations)
+        if not recorder.has_begun or (self._scene.error and not is_episode):
             self._tell(state=PlayState.FAILED, error=self._scene.error or "the situation did not arise")
             return
         if is_episode:
@@ -335,7 +334,7 @@ class Game(AnyTrialObserver):
                 write_page(folder)
         self._tell(state=PlayState.OVER, folder=folder)
 
-    def _count(self, job: TrialJob, folder: Path, keep: Callable[[Any], None]) -> None:
+    def _count(self, job: TrialSetup, folder: Path, keep: Callable[[Any], None]) -> None:
         """Plays a trial and keeps its row."""
         assert self._simulations is not None
         row = run_with(nullcontext(self._person), job, folder, Pictures.ALL, self._simulations, (self,))
@@ -345,10 +344,10 @@ class Game(AnyTrialObserver):
         else:
             self._tell(state=PlayState.OVER, folder=folder, episode=job.id)
 
-    def finished(self, result: EpisodeResult | DriveRecord) -> None:
-        """Keeps the error of an episode that could not be judged."""
-        if isinstance(result, EpisodeResult) and result.error is not None:
-            self._tell(error=result.error)
+    def finished(self, row: TrialRow, told: object) -> None:
+        """Keeps the error of a trial that could not be judged."""
+        if row.error is not None:
+            self._tell(error=row.error)
 
     def _tell(self, **changes: object) -> None:
         with self._news:

@@ -22,8 +22,9 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.jobs import HUMAN, DriveJob, EpisodeJob, Limits
+from automotive_cosim.run.jobs import HUMAN, Limits
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.row import R
 from automotive_cosim.run.settings import ALL_SUITES
@@ -137,14 +138,14 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
         super().__init__(folder)
         self._scenario = scenario
 
-    def job(self, task: str, half: str, seed: int, name: str) -> EpisodeJob:
+    def job(self, task: str, half: str, seed: int, name: str) -> EpisodeSetup:
         """The next episode of a person.
 
         Raises:
             UserError: there is no such task or half, or another process writes here.
         """
         jobs = people_plan((task,), (name,), (seed,), scenario=self._scenario).episodes()
-        found = next((job for job in jobs if isinstance(job, EpisodeJob) and job.setup.half == half), None)
+        found = next((job for job in jobs if isinstance(job, EpisodeSetup) and job.half == half), None)
         if found is None:
             raise UserError(f"task {task!r} has no half {half!r} that runs in {self._scenario or 'any scenario'}")
         return replace(found, repeat=self._first(lambda repeat: replace(found, repeat=repeat).id))
@@ -172,15 +173,15 @@ class PlayedDrives(PlayedRows[DriveTrialRow]):
 
     kind = DriveTrialRow
 
-    def drive(self, family: str, seed: int, name: str) -> DriveJob:
+    def drive(self, family: str, seed: int, name: str) -> DriveSetup:
         """The next drive of a person.
 
         Raises:
             UserError: another process writes here.
         """
 
-        def at(repeat: int) -> DriveJob:
-            return DriveJob(DriveSetup(family, seed, CONDITIONS, agent=HUMAN, model=name), repeat)
+        def at(repeat: int) -> DriveSetup:
+            return DriveSetup(family, seed, CONDITIONS, agent=HUMAN, model=name, repeat=repeat)
 
         return at(self._first(lambda repeat: at(repeat).id))
 

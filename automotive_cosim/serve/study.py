@@ -26,8 +26,8 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.formats.files import read_whole_lines
 from automotive_cosim.formats.writing import add_line, growing
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.store import opened
 from automotive_cosim.serve.dealing import PeoplePlan, deal
 from automotive_cosim.serve.play import Game
@@ -152,7 +152,7 @@ class PeopleStudy:
             rows = self._store.rows
             return told | {
                 "verdicts": [
-                    {"task": job.setup.task, "half": job.setup.half, "success": row.success, "missing": row.missing,
+                    {"task": job.task, "half": job.half, "success": row.success, "missing": row.missing,
                      "error": row.error}
                     for job in order
                     for row in [rows[job.id]]
@@ -211,10 +211,10 @@ class PeopleStudy:
 
     # --- inside -----------------------------------------------------------------------------------------------
 
-    def _next(self, person: str) -> EpisodeJob | None:
+    def _next(self, person: str) -> EpisodeSetup | None:
         return next((job for job in self._orders[person] if job.id not in self._store.rows), None)
 
-    def _asked(self, person: str) -> EpisodeJob | None:
+    def _asked(self, person: str) -> EpisodeSetup | None:
         """The judged episode whose questions are open."""
         rows = self._store.rows
         judged = (job for job in self._orders[person] if job.id in rows and rows[job.id].success is not None)
@@ -223,31 +223,31 @@ class PeopleStudy:
     def _done(self, person: str) -> int:
         return sum(job.id in self._store.rows for job in self._orders[person])
 
-    def _keep(self, job: EpisodeJob, row: EpisodeRow) -> None:
+    def _keep(self, job: EpisodeSetup, row: EpisodeRow) -> None:
         with self._lock:
             self._store.append(row)
             self._note("ended", job)
 
-    def _note(self, kind: str, job: EpisodeJob, values: Json | None = None) -> None:
+    def _note(self, kind: str, job: EpisodeSetup, values: Json | None = None) -> None:
         event = {"at": datetime.now().astimezone().isoformat(timespec="milliseconds"), "kind": kind, "id": job.id}
         event |= values or {}
         with growing(self._log) as file:
             add_line(file, json.dumps(event), lasting=True)
         self._events.append(event)
 
-    def _of(self, kind: str, job: EpisodeJob) -> list[Json]:
+    def _of(self, kind: str, job: EpisodeSetup) -> list[Json]:
         return [event for event in self._events if event["kind"] == kind and event["id"] == job.id]
 
-    def _line(self, job: EpisodeJob, place: int) -> Json:
+    def _line(self, job: EpisodeSetup, place: int) -> Json:
         row = self._store.rows.get(job.id)
         begun, ended, answered = (self._of(kind, job) for kind in ("begun", "ended", "answered"))
-        setup, answers = job.setup, answered[-1] if answered else {}
+        answers = answered[-1] if answered else {}
         return {
-            "person": setup.model,
+            "person": job.model,
             "place": place,
-            "task": setup.task,
-            "half": setup.half,
-            "seed": setup.seed,
+            "task": job.task,
+            "half": job.half,
+            "seed": job.seed,
             "id": job.id,
             "success": row.success if row else None,
             **{f"part_{name}": getattr(row.parts, name) if row and row.parts else None for name in PARTS},

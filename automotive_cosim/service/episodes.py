@@ -16,8 +16,7 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Session
-from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import End, EpisodeSpec
 from automotive_cosim.errors import ActionError, InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service.turn import EpisodeTurn, Outcome
@@ -75,13 +74,9 @@ class _OnTask:
     spec: EpisodeSpec
 
     def begin(self, simulations: Simulations, channels: frozenset[Channel], observer: Observer | None) -> Episode:
-        spec = self.spec
-        hand_over = SituationFinder(spec, simulations, observer=observer).find(SeedSource(spec.seed).next())
-        try:
-            return Episode.take_over(hand_over, spec.session(channels))
-        except BaseException:
-            hand_over.world.close()
-            raise
+        episode = Episode.begin_at(self.spec, simulations, lambda: channels, observer)
+        episode.observer = Observer()  # told of the way to the hand-over alone
+        return episode
 
     def outcome(self, episode_id: str, session: Episode) -> Outcome:
         assert session.verdict is not None

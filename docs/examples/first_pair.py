@@ -10,7 +10,7 @@
 #     pip install -c constraints.txt -e .
 
 # %%
-from automotive_cosim import Channel, EpisodeSetup, make_agent, run_episode
+from automotive_cosim import Channel, EpisodeSetup, make_agent, run_trial
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.traffic.fork import Simulations
@@ -59,9 +59,9 @@ outcomes = {}
 for half in ("first", "second"):
     for name in ("t3a", "asurada"):
         setup = EpisodeSetup("road_speed_80_in_50", half, seed=0)
-        result = run_episode(setup, make_agent(name, "rules"), simulations=simulations)
-        outcomes[name, half] = result.success
-        print(f"{half:6} half, {name:8}", "success" if result.success else "failure")
+        row = run_trial(setup, make_agent(name, "rules"), simulations=simulations)
+        outcomes[name, half] = row.success
+        print(f"{half:6} half, {name:8}", "success" if row.success else "failure")
 
 # %% [markdown]
 # T3A says the same in both halves, so it cannot win both. Only the agent that knows where it is wins the pair.
@@ -72,7 +72,7 @@ for half in ("first", "second"):
 
 # %%
 setup = EpisodeSetup("road_speed_80_in_50", "first", seed=0, conditions=Conditions.named({"geo": "none"}))
-blind = run_episode(setup, make_agent("asurada", "rules"), simulations=simulations)
+blind = run_trial(setup, make_agent("asurada", "rules"), simulations=simulations)
 simulations.close()
 print("without its place:", "success" if blind.success else "failure")
 

@@ -24,9 +24,10 @@ from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, S
 from automotive_cosim.interface.functions import as_openai, functions, offered
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import DEAREST_USD, IN_PER_S, OUT_PER_S
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.outside import OutsideAgent
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -447,7 +448,7 @@ def test_an_episode_is_won_and_nothing_tells_the_task(serve: Serve, simulations:
     remote = serve(answering([calls(FAN)], [calls(DONE)], ["Done."]))
     agent = make_agent(PREFIX + remote.address, settings=SETTINGS)
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent=agent.name, model="none", conditions=CALLS)
-    result = run_episode(setup, agent, simulations=simulations)
+    result = run_trial(setup, agent, simulations=simulations)
     assert result.success
     task: Task = CATALOGUE["hvac_fan_max"]
     heard = json.dumps(remote.messages).lower()

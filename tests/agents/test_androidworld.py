@@ -22,7 +22,8 @@ from automotive_cosim.contracts import Action, ActionType, BoundingBox, Directio
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import ActionError
 from automotive_cosim.replay.make import Touches, texts
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 CHECKOUT = "AUTOMOTIVE_COSIM_ANDROID_WORLD"
@@ -367,10 +368,10 @@ def test_its_agents_run_whole_episodes(checkout: None, simulations: Simulations,
             super().__init__(env, Chooses(env, last))
 
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent=named, model="own")
-    result = run_episode(setup, AndroidWorldAgent(Mine), simulations=simulations)
+    result = run_trial(setup, AndroidWorldAgent(Mine), simulations=simulations)
     assert (result.success, result.steps, result.end) == (last == "complete", 3, "declared")
-    assert result.verdict
-    assert result.verdict.goal.ok
+    assert result.parts
+    assert result.parts.goal
 
 
 @pytest.mark.slow
@@ -400,7 +401,7 @@ def test_seeact_runs_whole_episodes(
     monkeypatch.setattr(seeact_utils.requests, "post", answer)
     monkeypatch.setenv("OPENAI_API_KEY", "none")
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="SeeAct", model="own")
-    result = run_episode(setup, AndroidWorldAgent(seeact.SeeAct), simulations=simulations)
+    result = run_trial(setup, AndroidWorldAgent(seeact.SeeAct), simulations=simulations)
     assert (result.success, result.steps, result.end) == (True, 3, "declared")
     assert len(asked) == 6
 
@@ -416,7 +417,7 @@ def test_gui_owl_runs_whole_episodes(
 
     watcher = Touches()
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
-    run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
+    run_trial(setup, make_agent("oracle"), (watcher,), simulations=simulations)
     *touches, _ = watcher.actions
     acts = [*touches, Action(ActionType.STATUS, goal_status=GoalStatus(last))]
     answers = texts("gui-owl-1.5", acts)
@@ -427,7 +428,7 @@ def test_gui_owl_runs_whole_episodes(
             super().__init__(env, model, "qwen-vl", None, None, output_path=str(tmp_path / "out"))
 
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="GUIOwl", model="own")
-    result = run_episode(setup, AndroidWorldAgent(Mine), simulations=simulations)
+    result = run_trial(setup, AndroidWorldAgent(Mine), simulations=simulations)
     assert (result.success, result.steps, result.end) == (last == "complete", len(acts), "declared")
-    assert result.verdict
-    assert result.verdict.goal.ok
+    assert result.parts
+    assert result.parts.goal

@@ -1,6 +1,5 @@
 """The same instance with another input of place."""
 
-import json
 import re
 from collections.abc import Iterator
 
@@ -13,7 +12,9 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.interface.controls import SPOTS, GeoInput, unrelated
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.skills import SKILLS
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.trial import run_trial
 
 QUICK = {"task": "hvac_fan_max", "scenario": "grid"}
 PLACE = {"gps", "context"}
@@ -125,7 +126,7 @@ def _won(simulations, agent: str, geo: GeoInput = GeoInput.FULL) -> Iterator[boo
     """Half by half, played when asked for."""
     for half in ("first", "second"):
         setup = EpisodeSetup(half=half, conditions=Conditions(GeoInput(geo)))
-        yield run_episode(
+        yield run_trial(
             setup, make_agent(agent, settings=AgentSettings(Conditions(GeoInput(geo)))), simulations=simulations
         ).success
 
@@ -143,5 +144,5 @@ def test_with_a_wrong_place_a_pairs_success_falls_to_that_without_place(simulati
 
 def test_the_record_says_under_which_control_it_was_made(simulations):
     setup = EpisodeSetup(**QUICK, conditions=Conditions(GeoInput.WRONG))
-    result = run_episode(setup, make_agent("no-op"), simulations=simulations)
-    assert json.loads(json.dumps(result.as_json(), default=str))["conditions"]["geo"] == "wrong"
+    result = run_trial(setup, make_agent("no-op"), simulations=simulations)
+    assert as_json(result)["conditions"]["geo"] == "wrong"

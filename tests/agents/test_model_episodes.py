@@ -8,15 +8,16 @@ import pytest
 from automotive_cosim.agents import AgentSettings, ModelAgent, make_agent
 from automotive_cosim.agents.settings import ASURADA, T3A
 from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import ModelError
 from automotive_cosim.geo.earth import METRES_PER_DEGREE
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.interface import trace
 from automotive_cosim.models import ModelReply, make_model
-from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.estimates import estimates
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.record import Recorder
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.tasking.sets import Suite
 
 QUICK = EpisodeSetup(task="hvac_fan_max", scenario="grid")
@@ -37,8 +38,8 @@ class Says:
 
 
 def _run(simulations, agent, folder=None):
-    watchers = [Recorder(EpisodeJob(QUICK), folder, whole=True)] if folder else []
-    return run_episode(QUICK, agent, watchers, simulations=simulations)
+    watchers = [Recorder(QUICK, folder, whole=True)] if folder else []
+    return run_trial(QUICK, agent, watchers, simulations=simulations)
 
 
 def _lines(folder) -> list[dict]:

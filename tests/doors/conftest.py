@@ -6,10 +6,10 @@ from automotive_cosim.agents import make_agent
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.settings import DriveSettings
-from automotive_cosim.run.drive import DriveSetup, run_drive
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, run_episode
-from automotive_cosim.run.jobs import DriveJob
-from automotive_cosim.run.observer import Shot
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.observer import Shot, TrialObserver
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 DRIVE: Json = {"drive": "grid_june", "seed": 3, "minutes": 0.5}
@@ -26,12 +26,12 @@ WAIT: Json = {"action_type": "wait"}
 def drive_trace(simulations: Simulations) -> str:
     """The trace of waiting on that drive until it is over."""
     setup = DriveSetup("grid_june", 3, agent="silent", settings=DriveSettings(minutes=0.5))
-    row = run_drive(DriveJob(setup).planned(), setup, make_agent("silent"), simulations=simulations).row
+    row = run_trial(setup, make_agent("silent"), simulations=simulations)
     assert row.trace_sha256
     return row.trace_sha256
 
 
-class Actions(EpisodeObserver):
+class Actions(TrialObserver):
     def __init__(self) -> None:
         self.played: list[Json] = []
 
@@ -45,5 +45,5 @@ def oracle(simulations: Simulations) -> tuple[list[Json], str | None]:
     """The reference solution's actions for hvac_fan_max on the grid, and their trace."""
     watcher = Actions()
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
-    result = run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
+    result = run_trial(setup, make_agent("oracle"), (watcher,), simulations=simulations)
     return watcher.played, result.trace_sha256

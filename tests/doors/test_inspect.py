@@ -17,8 +17,10 @@ from automotive_cosim.errors import TrafficError, UserError
 from automotive_cosim.interface.observe import ALL
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.report.stats import LEAST_CLUSTERS
-from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
-from automotive_cosim.run.jobs import DriveJob
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.record import Recorder
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasks import CATALOGUE
@@ -199,18 +201,21 @@ class Seeing(RulePerfect):
 
 
 @pytest.fixture
-def watched(short: str, simulations: Simulations) -> DriveRecord:
-    """The rule-perfect watcher's drive on the command line."""
+def watched(short: str, simulations: Simulations) -> tuple[DriveTrialRow, list[Json]]:
+    """The rule-perfect watcher's drive on the command line: its row, and its steps."""
     setup = DriveSetup(short, 43, agent="rule-perfect")
-    return run_drive(DriveJob(setup).planned(), setup, Seeing(), simulations=simulations)
+    recorder = Recorder(setup, None)
+    row = run_trial(setup, Seeing(), (recorder,), simulations=simulations)
+    assert isinstance(row, DriveTrialRow)
+    return row, recorder.lines[:-1]
 
 
 def test_the_rule_perfect_watchers_acts_give_the_command_lines_drive(inspect, short, watched) -> None:
-    acts = [step["action"] for step in watched.steps if step["action"]]
+    acts = [step["action"] for step in watched[1] if step["action"]]
     log = inspect(acts, inspect_tasks.drives(families=short, seeds=43, pictures=False))
     assert log.status == "success", log.error
     [sample] = log.samples
-    score, row = sample.scores["watched"], watched.row
+    score, row = sample.scores["watched"], watched[0]
     assert row.score.met > 0
     assert score.metadata["trace_sha256"] == row.trace_sha256
     assert score.metadata["end"] == "minutes_over"
@@ -243,7 +248,7 @@ def test_a_drive_that_the_road_breaks_is_an_error_of_the_sample(inspect, service
 
 
 def test_figures_of_several_drives_are_the_reports_with_its_intervals(inspect, short, watched) -> None:
-    acts = [step["action"] for step in watched.steps if step["action"]]
+    acts = [step["action"] for step in watched[1] if step["action"]]
     [sample] = inspect(acts, inspect_tasks.drives(families=short, seeds=43)).samples
     score = sample.scores["watched"]
 
@@ -254,7 +259,7 @@ def test_figures_of_several_drives_are_the_reports_with_its_intervals(inspect, s
 
     for count in (LEAST_CLUSTERS - 1, LEAST_CLUSTERS + 1):
         rows = [
-            replace(watched.row, seed=seed, score=replace(watched.row.score, nuisances=seed % 3))
+            replace(watched[0], seed=seed, score=replace(watched[0].score, nuisances=seed % 3))
             for seed in range(count)
         ]
         for name, figure in inspect_tasks.SCORES.items():

@@ -19,8 +19,9 @@ from automotive_cosim.contracts.given import Interface
 from automotive_cosim.doors.shared import own_scenario
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.interface.functions import functions
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.script import ScriptedAgent
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.service import EpisodeService, ServiceLimits
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
@@ -52,7 +53,7 @@ def trace(simulations: Simulations) -> str:
 
     left = [*ACTIONS]
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="script", model="none")
-    result = run_episode(setup, Script([]), simulations=simulations)
+    result = run_trial(setup, Script([]), simulations=simulations)
     assert result.steps == 3
     assert result.trace_sha256
     return result.trace_sha256

@@ -11,7 +11,6 @@ from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.drives.staging import ON_REQUEST
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.run.plan import make_plan
 
 SETTINGS = DriveSettings(22.5, 80.0, None, 3.0, 0.5, "hurried", 90.0)
@@ -69,7 +68,7 @@ def test_one_thing_is_staged_instead_of_all_others() -> None:
 
 
 def test_settings_name_another_drive() -> None:
-    plain, other = (DriveJob(DriveSetup("grid_june", 1, settings=each)) for each in (AS_SCRIPTED, SETTINGS))
+    plain, other = (DriveSetup("grid_june", 1, settings=each) for each in (AS_SCRIPTED, SETTINGS))
     assert plain.id != other.id
     assert plain.instance != other.instance
     assert other.planned().settings == SETTINGS
@@ -82,9 +81,9 @@ def test_a_plan_lists_single_trials() -> None:
     ]
     plan = make_plan({"agents": ["oracle"], "trials": trials})
     drive, task = sorted(plan.jobs(), key=lambda job: type(job).__name__)
-    assert isinstance(drive, DriveJob)
-    assert drive.setup.settings == DriveSettings(hour=22)
-    assert task.setup.conditions.latency_s == 4
+    assert isinstance(drive, DriveSetup)
+    assert drive.settings == DriveSettings(hour=22)
+    assert task.conditions.latency_s == 4
     assert "trials" not in make_plan({"agents": ["oracle"]}).as_json()
 
 

@@ -39,7 +39,7 @@ def test_a_drive_ends_with_its_score_as_the_reward(simulations: Simulations) -> 
         assert env.observation_space.contains(seen)
         steps += 1
     assert info["step"] == steps
-    assert reward == info["score"] / 100 == info["result"].value / 100
+    assert reward == info["score"] / 100 == info["result"]["value"] / 100
     assert "speed" in (decode(seen).vehicle.noticed or "")
     assert info["trace_sha256"] == env.episode.trace_sha256
     with pytest.raises(gym.error.ResetNeeded):

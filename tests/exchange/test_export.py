@@ -23,9 +23,10 @@ from automotive_cosim.exchange.recording import RecordedAct, Recording, read_rec
 from automotive_cosim.exchange.ssam import DIMENSIONS, FORMAT, TIMESTEP, VEHICLE, write_trajectories
 from automotive_cosim.exchange.trajectories import write_csv, write_parquet
 from automotive_cosim.formats.files import opened
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.road import RoadRecord, Second
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.traffic.network import drives_on_left
 from automotive_cosim.traffic.options import read_configuration
@@ -268,9 +269,7 @@ def test_trajectories_for_ssam_pass_through_the_recorded_places(recording, tmp_p
 @pytest.mark.sumo
 def test_an_episode_is_exported_by_command(tmp_path, simulations, cli):
     setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", agent="oracle", model="none")
-    run_episode(
-        setup, make_agent("oracle"), [RoadRecorder(tmp_path / "kept", setup.about)], simulations=simulations
-    )
+    run_trial(setup, make_agent("oracle"), [RoadRecorder(tmp_path / "kept", setup.about)], simulations=simulations)
     told = cli("export", tmp_path / "kept", "--openscenario", "1.3", "--opendrive", "--fcd", "--csv", "--ssam")
     assert told.code == 0, told.err
     folder = tmp_path / "kept" / "exchange"

@@ -30,9 +30,9 @@ from automotive_cosim.models.base import OUT_PER_S
 from automotive_cosim.models.refusal import pause_asked_s, reason, told
 from automotive_cosim.models.remote import BODY_LIMIT_BYTES, HIDDEN_TOKENS, _Endpoint
 from automotive_cosim.replay.make import Touches, provider_body, texts
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
-from automotive_cosim.run.jobs import EpisodeJob
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.record import Recorder
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 KEY = "sk-a-very-secret-key-0123456789"
@@ -677,7 +677,7 @@ def test_no_key_is_in_the_record_of_an_episode(server, tmp_path):
     server.behaviours = [lambda handler: send(handler, 200, completion(text))]
     agent = ModelAgent(T3A, make_model("local/m"))
     setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", model=agent.model, max_steps=3)
-    result = run_episode(setup, agent, [Recorder(EpisodeJob(setup), tmp_path / "out")])
+    result = run_trial(setup, agent, [Recorder(setup, tmp_path / "out")])
     assert result.steps == 3
     assert result.tokens_in == 7 * len(server.asked)
     files = [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
@@ -694,7 +694,7 @@ def touches(simulations: Simulations) -> list[Action]:
     """The reference solution of the task below."""
     watcher = Touches()
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
-    assert run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations).success
+    assert run_trial(setup, make_agent("oracle"), (watcher,), simulations=simulations).success
     return watcher.actions
 
 
@@ -720,8 +720,8 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
     server.behaviours = [answer(text) for text in said]
     name = f"local/some-model?seed=7&format={form}"
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="native", model=name)
-    result = run_episode(
-        setup, make_agent("native", name), (Recorder(EpisodeJob(setup), tmp_path / "out"),), simulations=simulations
+    result = run_trial(
+        setup, make_agent("native", name), (Recorder(setup, tmp_path / "out"),), simulations=simulations
     )
     assert (result.success, result.model) == (True, name)
     assert (result.tokens_in, result.tokens_out) == (7 * len(said), 3 * len(said))
@@ -733,7 +733,7 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
         assert headers.get(own or "authorization") == (KEY if own else f"Bearer {KEY}")
         assert ("authorization" in headers) == (own is None)
     again = make_agent("native", f"replay/{tmp_path / 'out'}?format={form}")
-    assert run_episode(setup, again, simulations=simulations).trace_sha256 == result.trace_sha256
+    assert run_trial(setup, again, simulations=simulations).trace_sha256 == result.trace_sha256
 
 
 # --- what is sent, and to whom -----------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from automotive_cosim.errors import ModelError, UnknownNameError
 from automotive_cosim.models import ChatMessage, make_model
 from automotive_cosim.models.replay import conversation, shipped
 from automotive_cosim.replay.make import SETUP
-from automotive_cosim.run.episode import run_episode
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 
@@ -29,7 +29,7 @@ def test_each_plays_to_its_recorded_end(name: str, simulations: Simulations) -> 
     told = conversation(name)
     model = f"replay/{name}" + (f"?format={name}" if told["agent"] == "native" else "")
     setup = replace(SETUP, **told["episode"], agent=told["agent"], model=model)
-    result = run_episode(setup, make_agent(told["agent"], model), simulations=simulations)
+    result = run_trial(setup, make_agent(told["agent"], model), simulations=simulations)
     assert result.error is None, "make them anew: python -m automotive_cosim.replay.make"
     assert (str(result.end), result.success) == (told["end"], told["success"])
     assert result.success

@@ -11,7 +11,6 @@ from automotive_cosim.proof.difficulty import agreement, core, correlation, fit,
 from automotive_cosim.run import difficulty as record
 from automotive_cosim.run.difficulty import Difficulty, Outcomes, WonBy
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.plan import choose
 from automotive_cosim.run.row import as_json
 from automotive_cosim.tasks import CATALOGUE
@@ -84,7 +83,7 @@ def test_ranks_of_equals_are_equal():
 def test_trials_with_an_error_and_those_of_the_oracle_do_not_count(tmp_path):
     def row(agent, seed, **changes):
         setup = EpisodeSetup("system_dark_screen", "first", agent=agent, model="rules", seed=seed)
-        return json.dumps(as_json(replace(EpisodeJob(setup).planned(), **changes)))
+        return json.dumps(as_json(replace(setup.planned(), **changes)))
 
     rows = [
         row("t3a", 0, success=True),

@@ -22,7 +22,6 @@ from automotive_cosim.publish.episodes import ROWS, check_trial
 from automotive_cosim.publish.verify import verify
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.store import read_rows, trace_file
 
@@ -124,7 +123,7 @@ def test_a_file_that_unpacks_to_more_than_its_plan_allows_is_named(unpacked, tmp
 
 @pytest.mark.parametrize("file", [judged_file, trace_file])
 def test_so_is_that_of_a_drive(tmp_path, file):
-    job = DriveJob(DriveSetup("grid_january", agent="no-op"))
+    job = DriveSetup("grid_january", agent="no-op")
     path = file(tmp_path, job.id)
     path.parent.mkdir()
     padded = b"x" * (70 << 20)

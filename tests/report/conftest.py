@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 from PIL import Image
 
+from automotive_cosim.run.episode import IN_RESULT, EpisodeSetup
+from automotive_cosim.run.row import as_json
 from automotive_cosim.run.trial_folder import shown
 
 
@@ -110,7 +112,8 @@ def record(tmp_path: Path) -> Callable[..., Path]:
         actions = (None, {"action_type": "click", "index": 0}, {"action_type": "status", "goal_status": "complete"})
         steps = [_step(number, action) for number, action in enumerate(actions)]
         result = _episode(**changes)
-        told = {"result": result, "manifest": result.pop("manifest")}
+        row = as_json(EpisodeSetup().planned()) | {name: result[name] for name in IN_RESULT if name in result}
+        told = {"row": row, "result": result, "manifest": result.pop("manifest")}
         (folder / "trial.json").write_text(json.dumps(told), encoding="utf-8")
         lines = "".join(json.dumps(step) + "\n" for step in shown(steps))
         (folder / "steps.jsonl").write_text(lines, encoding="utf-8")

@@ -30,7 +30,7 @@ def results(tmp_path_factory):
     folder = tmp_path_factory.mktemp("repeats") / "e"
     with opened(folder, plan.as_json(), EpisodeRow) as store:
         for job in plan.jobs():
-            won = WON[job.setup.task, job.setup.seed][job.repeat]
+            won = WON[job.task, job.seed][job.repeat]
             store.append(replace(job.planned(), success=won))
             last = step(action_type="status", goal_status="complete") if won else step()
             write_trace(folder, job.id, [step(), step(action_type="click", index=3), last, {"result": {}}])

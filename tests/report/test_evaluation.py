@@ -39,7 +39,7 @@ CHROMIUM = shutil.which("chromium")
 
 def succeeds(job):
     """asurada wins all, t3a the first halves, always-alert the first half of the speed task."""
-    setup = job.setup
+    setup = job
     first = setup.half == "first"
     return {
         "asurada": True,
@@ -53,17 +53,17 @@ def folder(tmp_path_factory, episode):
     folder = tmp_path_factory.mktemp("evaluation") / "e"
     with opened(folder, PLAN.as_json(), EpisodeRow) as store:
         for job in PLAN.jobs():
-            if job.setup.agent == "t3a" and job.setup.task == "hvac_fan_max" and job.setup.seed == 1:
+            if job.agent == "t3a" and job.task == "hvac_fan_max" and job.seed == 1:
                 store.append(replace(failed(job, "WorkerDied", "its <process> ended"), attempts=3))
                 continue
             success = succeeds(job)
             parts = PartsHeld(goal=success, clean=True, safe=True, in_time=True, declared=True)
             row = replace(
                 job.planned(), country="FR", success=success, reward=float(success), end=End.DECLARED, parts=parts,
-                alerts=int(job.setup.agent == "always-alert"), steps=3, speed_compliance=0.9,
+                alerts=int(job.agent == "always-alert"), steps=3, speed_compliance=0.9,
                 min_time_to_collision_s=4.0, interaction_s=2.0, within_guideline=True, tokens_in=900,
                 prompt_tokens=(400, 500), drive=DRIVE, baseline_drive=DRIVE, tokens_out=40,
-                trace_sha256="ab" * 32, held_out=job.setup.seed == 1,
+                trace_sha256="ab" * 32, held_out=job.seed == 1,
             )  # fmt: skip
             store.append(row)
             verdict = episode()["verdict"] | {

@@ -14,10 +14,10 @@ from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction,
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.failures import FailureClass, failure_class
-from automotive_cosim.run.collect import Collector
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
-from automotive_cosim.run.episode_row import PartsHeld
-from automotive_cosim.run.jobs import EpisodeJob
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.record import Recorder
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -137,12 +137,11 @@ PLANTED: dict[FailureClass, list[tuple[str, str, Sequence[Any], str]]] = {
 
 def classified(task: str, half: str, moves: Sequence[Any], thought: str, simulations: Simulations) -> FailureClass:
     setup = EpisodeSetup(task, half, "grid", agent="planted", model="planted")
-    collector = Collector(EpisodeJob(setup))
-    result = run_episode(setup, Planted(moves, thought), [collector], simulations=simulations)
-    assert result.verdict is not None, result.error
-    assert result.success is False
-    record = collector.record(result)
-    return failure_class(record.row, record.lines)
+    recorder = Recorder(setup, None)
+    row = run_trial(setup, Planted(moves, thought), [recorder], simulations=simulations)
+    assert isinstance(row, EpisodeRow)
+    assert row.success is False, row.error
+    return failure_class(row, recorder.lines)
 
 
 @pytest.mark.slow
@@ -158,6 +157,6 @@ def test_doing_nothing_is_of_no_class():
     step = {"step": 0, "elements": [], "action": None, "feedback": {"code": "none"}, "thought": ""}
     wait = step | {"step": 1, "action": {"action_type": "wait"}, "feedback": {"code": "ok"}}
     parts = PartsHeld(goal=False, clean=True, safe=True, in_time=False, declared=False)
-    row = replace(EpisodeJob(EpisodeSetup(FAN)).planned(), success=False, parts=parts)
+    row = replace(EpisodeSetup(FAN).planned(), success=False, parts=parts)
     assert failure_class(row, [step, wait, {"result": {}}]) is FailureClass.UNCLASSIFIED
     assert failure_class(replace(row, task="gone"), [step]) is FailureClass.UNCLASSIFIED

@@ -23,14 +23,14 @@ def _film(
     """Times of the frames of a film that was handed over at 100 s."""
     shown: list[float] = []
 
-    def compose(self: Film, frame: frames.FilmFrame, result: Any, painter: Any) -> Image.Image:
-        assert [sample for sample in result.path if sample.at_s <= frame.at_s + frames.SAME_TIME_S]
+    def compose(self: Film, frame: frames.FilmFrame, path: Any, painter: Any) -> Image.Image:
+        assert [sample for sample in path if sample.at_s <= frame.at_s + frames.SAME_TIME_S]
         shown.append(100.0 + frame.at_s)
         return Image.new("RGB", (8, 8))
 
     monkeypatch.setattr(Film, "_compose", compose)
-    monkeypatch.setattr(frames, "outcome", lambda result: "")
-    monkeypatch.setattr(frames, "why", lambda result: "")
+    monkeypatch.setattr(frames, "outcome", lambda row: "")
+    monkeypatch.setattr(frames, "why", lambda row, result: "")
     film = Film(folder)
     cockpit = cast("Any", SimpleNamespace(screenshot=lambda: SCREEN))
     for time_s in moments_s:
@@ -39,7 +39,7 @@ def _film(
     step = SimpleNamespace(moment=SimpleNamespace(time_s=100.0))
     film.begun(cast("Any", episode), cast("Any", SimpleNamespace(step=step, screenshot=SCREEN)))
     path = tuple(Sample(at_s, 50.0, 50.0, "", 0.0, 0.0, 0.0) for at_s in path_s)
-    film.finished(cast("Any", SimpleNamespace(path=path)))
+    film.finished(cast("Any", None), cast("Any", SimpleNamespace(path=path)))
     return shown
 
 

@@ -66,7 +66,7 @@ def test_a_fall_is_worse_beyond_what_is_allowed_and_named(tmp_path):
     assert episodes.is_worse(share - 0.01)
     assert not episodes.is_worse(share)
     told = markdown(found, 0.0)
-    assert PLAN.jobs()[2].task.id in told.partition("**Lost")[2]
+    assert PLAN.jobs()[2].task in told.partition("**Lost")[2]
     assert "missing: goal" in told
 
 
@@ -133,7 +133,7 @@ def test_the_summary_for_a_terminal_is_narrow_and_says_what_the_markdown_says(tm
     assert markdown(found, 0.0).startswith(f"**{head}**")
     assert max(map(len, lines)) <= 80
     assert f"{len(PLAN.jobs()) - 1}/{len(PLAN.jobs())} before" in lines[1]
-    assert [line for line in lines if PLAN.jobs()[2].task.id in line], "what was lost is named"
+    assert [line for line in lines if PLAN.jobs()[2].task in line], "what was lost is named"
 
 
 def test_an_improvement_is_not_worse(tmp_path):
@@ -152,7 +152,7 @@ def test_what_is_not_judged_any_more_is_worse_and_hides_nowhere(tmp_path):
 
 
 def test_a_pair_with_a_half_that_is_not_judged_is_told_whichever_half_it_is(tmp_path):
-    halves = [number for number, job in enumerate(PLAN.jobs()) if job.pair and job.setup.seed == 0]
+    halves = [number for number, job in enumerate(PLAN.jobs()) if job.pair and job.seed == 0]
     first = write(tmp_path / "a")
     for number in halves:
         pairs = changes(first, write(tmp_path / f"b{number}", errors={number}))[1]
@@ -243,7 +243,7 @@ def scored(folder, points, plan=DRIVES):
 
     empty = score(Judgement((), ()), 600.0)
     with opened(folder, plan.as_json(), DriveTrialRow) as store:
-        for job, value in zip(sorted(plan.jobs(), key=lambda job: job.setup.seed), points, strict=True):
+        for job, value in zip(sorted(plan.jobs(), key=lambda job: job.seed), points, strict=True):
             if value is not None:
                 made = replace(empty, events=1, missed=1, worth=1.0, cost=1.0 - value / 50)
                 assert made.value == pytest.approx(value)

@@ -58,7 +58,7 @@ def test_wherever_it_stops_everything_planned_is_accounted_for(tmp_path, cut):
 
 
 def test_a_rate_is_over_episodes_that_ran_with_what_was_not_judged_beside(tmp_path):
-    mine = [number for number, job in enumerate(JOBS) if job.setup.agent == "asurada"]
+    mine = [number for number, job in enumerate(JOBS) if job.agent == "asurada"]
     assert len(mine) == 10
     found = read_results(write(tmp_path / "e", mine[:7], errors=mine[:1]))
     (row,) = (row for row in progress(found).rows if str(row[0]).startswith("asurada"))
@@ -127,7 +127,7 @@ def test_where_nothing_was_judged_nothing_has_become_worse(tmp_path):
 
 
 def test_a_contestant_without_an_episode_yet_is_shown(tmp_path):
-    mine = [number for number, job in enumerate(JOBS) if job.setup.agent == "asurada"]
+    mine = [number for number, job in enumerate(JOBS) if job.agent == "asurada"]
     found = read_results(write(tmp_path / "e", mine))
     assert {each.agent for each in found.contestants} == {"asurada", "t3a", "always-alert"}
     assert not found.shared().rows

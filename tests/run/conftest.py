@@ -8,22 +8,24 @@ import pytest
 
 from automotive_cosim.agents import Agent, make_agent
 from automotive_cosim.episode.conditions import TABLE, Conditions
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, run_episode
-from automotive_cosim.run.jobs import EpisodeJob
-from automotive_cosim.run.observer import Shot
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.record import Recorder
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 TASK = "hvac_fan_max"
 
 
 @dataclass
-class Memory(EpisodeObserver):
+class Memory(TrialObserver):
     """Keeps what it was told."""
 
     shots: list[Shot] = field(default_factory=list)
     moved_s: list[float] = field(default_factory=list)
-    results: list[EpisodeResult] = field(default_factory=list)
+    rows: list[EpisodeRow] = field(default_factory=list)
+    told: EpisodeResult | None = None
 
     def moved(self, moment, cockpit):
         self.moved_s.append(moment.time_s)
@@ -34,13 +36,14 @@ class Memory(EpisodeObserver):
     def stepped(self, shot):
         self.shots.append(shot)
 
-    def finished(self, result):
-        self.results.append(result)
+    def finished(self, row, told):
+        self.rows.append(row)
+        self.told = told
 
 
 @dataclass
 class Episode:
-    result: EpisodeResult
+    result: EpisodeRow
     folder: Path
     memory: Memory
 
@@ -57,7 +60,7 @@ def run(tmp_path: Path, simulations: Simulations) -> Callable[..., Episode]:
             conditions=Conditions.named(named),
         )
         memory = Memory()
-        watchers = [Recorder(EpisodeJob(setup), tmp_path / out, {}, whole=True), memory]
-        return Episode(run_episode(setup, player, watchers, simulations=simulations), tmp_path / out, memory)
+        watchers = [Recorder(setup, tmp_path / out, {}, whole=True), memory]
+        return Episode(run_trial(setup, player, watchers, simulations=simulations), tmp_path / out, memory)
 
     return run_

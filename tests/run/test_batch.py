@@ -32,7 +32,7 @@ from tests.preloaded import ADDRESS
 
 TROUBLE = """
 import gc, os, pathlib, sys, time
-NOUNS = ("Instance", "EpisodeSetup", "EpisodeJob", "HandOver")
+NOUNS = ("Instance", "EpisodeSetup", "HandOver")
 from automotive_cosim.errors import ModelError, TriggerNotReachedError
 
 class Base:

@@ -72,7 +72,7 @@ def test_what_was_recorded_is_repeated_exactly(run, clock):
 def test_whoever_thinks_beyond_the_deadline_is_too_late_and_nobody_waits_for_more(run):
     late = run("oracle", latency_s=10 * DEADLINE_S)
     assert late.result.success is False
-    assert not late.result.verdict.in_time.ok
+    assert not late.result.parts.in_time
     assert _lines(late)[1]["thought_s"] == DEADLINE_S
 
 

@@ -30,7 +30,7 @@ def another(condition: Condition) -> object:
 def test_a_condition_reaches_jobs_ids_rows_tables_and_columns(condition: Condition) -> None:
     value = another(condition)
     plan = make_plan(BASE | {condition.name: [str(condition.default) if condition.choices else 0.0, value]})
-    rows = [job.planned() for job in plan.episodes() if job.setup.half == "first"]
+    rows = [job.planned() for job in plan.episodes() if job.half == "first"]
     assert len({row.id for row in rows}) == 2
     assert {condition.of(row.conditions) for row in rows} == {condition.default, value}
     assert all(condition.name in columns(row) for row in rows)

@@ -34,9 +34,9 @@ from automotive_cosim.report.regression import changes
 from automotive_cosim.report.stats import LEAST_CLUSTERS
 from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.coverage import unit_of
-from automotive_cosim.run.drive import DriveSetup, run_drive
+from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import DriveJob, EpisodeJob
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.record import Recorder
@@ -46,6 +46,7 @@ from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.row import as_json, from_json, steady
 from automotive_cosim.run.store import read_rows, read_trace
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.run.trial_folder import read_steps, read_trial
 from automotive_cosim.traffic.fork import Simulations
 
@@ -103,7 +104,7 @@ def test_tasks_and_drives_are_planned_together_and_apart() -> None:
 def test_a_drive_belongs_to_the_set_of_its_seed() -> None:
     values = {"drives": ["grid_june"], "agents": ["silent"], "seeds": list(range(40))}
     whole, dev, test = (
-        {job.setup.seed for job in make_plan(values | {"split": split}).jobs()} for split in ("both", "dev", "test")
+        {job.seed for job in make_plan(values | {"split": split}).jobs()} for split in ("both", "dev", "test")
     )
     assert dev | test == whole
     assert dev
@@ -264,9 +265,9 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
     assert replayed.exit_code == 0, replayed.output
     assert f"all {row.steps + 1} steps are the same" in replayed.output
     *steps, _ = read_trace(folder, row.id)
-    job = DriveJob(DriveSetup(row.family, row.seed, settings=row.settings, agent=row.agent, model=row.model))
+    job = DriveSetup(row.family, row.seed, settings=row.settings, agent=row.agent, model=row.model)
     quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
-    different = compare(steps, played(job, quiet, frozenset(row.channels)).lines[:-1])
+    different = compare(steps, played(job, quiet, frozenset(row.channels))[1].lines[:-1])
     assert "action" in next(step for step in different if step.differs).differs
     with pytest.raises(UserError, match="no drive in"):
         rerun(folder, "grid_december")
@@ -292,32 +293,30 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     agent = Slow()
     with (
         closing(Simulations()) as simulations,
-        closing(Recorder(DriveJob(setup), tmp_path / "drive")) as recorder,
+        closing(Recorder(setup, tmp_path / "drive")) as recorder,
         closing(RoadRecorder(tmp_path / "drive", setup.about)) as road_recorder,
     ):
-        job = DriveJob(setup)
-        first = run_drive(job.planned(), setup, agent, simulations=simulations, observers=(recorder, road_recorder))
-        channels = frozenset(first.row.channels)
-        again = played(job, first.steps, channels, simulations=simulations)
-    assert len({step["thought_s"] for step in first.steps}) > 2
-    assert not [step for step in compare(first.steps, again.lines[:-1]) if step.differs]
-    assert again.row.trace_sha256 == first.row.trace_sha256
-    assert (again.row.events, again.row.acts, again.row.score) == (
-        first.row.events,
-        first.row.acts,
-        first.row.score,
-    )
+        first = run_trial(setup, agent, (recorder, road_recorder), simulations=simulations)
+        assert isinstance(first, DriveTrialRow)
+        *steps, last = recorder.lines
+        again, kept = played(setup, steps, frozenset(first.channels), simulations=simulations)
+    assert len({step["thought_s"] for step in steps}) > 2
+    assert not [step for step in compare(steps, kept.lines[:-1]) if step.differs]
+    assert isinstance(again, DriveTrialRow)
+    assert again.trace_sha256 == first.trace_sha256
+    assert (again.events, again.acts, again.score) == (first.events, first.acts, first.score)
+    timeline = last["result"]["timeline"]
     lines = list(read_road(tmp_path / "drive" / "road.jsonl.gz"))
     road = [line for line in lines if "at_s" in line]
     assert lines[-1]["baseline"]
-    assert [round(line["at_s"], 1) for line in road] == first.timeline["time_s"][1:]
-    assert [line["speed_kmh"] for line in road] == first.timeline["speed_kmh"][1:]
+    assert [round(line["at_s"], 1) for line in road] == timeline["time_s"][1:]
+    assert [line["speed_kmh"] for line in road] == timeline["speed_kmh"][1:]
     recorded = read_steps(tmp_path / "drive")
     for name in ("step", "action", "thought_s", "feedback", "sha256"):
-        assert [line[name] for line in recorded] == [step[name] for step in first.steps]
+        assert [line[name] for line in recorded] == [step[name] for step in steps]
     told = read_trial(tmp_path / "drive")
-    assert told["row"] == as_json(first.row)
-    assert told["result"] == {"timeline": first.timeline}
+    assert told["row"] == as_json(first)
+    assert told["result"] == {"timeline": timeline}
 
 
 @pytest.mark.sumo
@@ -325,7 +324,7 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
 def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None:
     values = PLAN | {"agents": ["rule-perfect"]}
     jobs = make_plan(values | {"latency_s": [0, 1, 3, 10]}).jobs()
-    assert {job.setup.conditions.latency_s for job in jobs} == {0, 1, 3, 10}
+    assert {job.conditions.latency_s for job in jobs} == {0, 1, 3, 10}
     two = make_plan(values | {"latency_s": [0, 10]})
     assert run_plan(two, tmp_path / "e", executor=Processes(1), retries=0).judged == 2
     rows = read_rows(tmp_path / "e", DriveTrialRow).values()
@@ -406,11 +405,11 @@ def test_intervals_come_from_whole_drives(folder: Path) -> None:
 @pytest.mark.parametrize(("limits", "steps"), [({"drive_steps": 2}, 2), ({"drive_model_s": 9.0}, 100_000)])
 def test_a_drive_has_limits_of_its_own(limits: dict[str, float], steps: int) -> None:
     values = {"drives": ["grid_june"], "tasks": ["hvac_fan_max"], "agents": ["silent"], "limits": limits}
-    drive, episode = sorted(make_plan(values).jobs(), key=lambda job: isinstance(job, EpisodeJob))
+    drive, episode = sorted(make_plan(values).jobs(), key=lambda job: isinstance(job, EpisodeSetup))
     assert drive.limits == episode.limits.of_drives
-    assert episode.setup.max_steps == 20
+    assert episode.max_steps == 20
     assert drive.limits.model_s == limits.get("drive_model_s", 14_400.0)
-    assert drive.setup.max_steps == steps
+    assert drive.max_steps == steps
 
 
 def test_the_rest_of_a_drive_is_unwatched_once_a_limit_is_reached(simulations: Simulations) -> None:
@@ -422,9 +421,11 @@ def test_the_rest_of_a_drive_is_unwatched_once_a_limit_is_reached(simulations: S
         settings = DriveSettings(minutes=0.5)
         setup = DriveSetup("grid_june", 3, settings=settings, max_steps=most_steps, agent="alert-often")
         agent = make_agent("alert-often")
-        record = run_drive(DriveJob(setup).planned(), setup, agent, simulations=simulations, wall_s=wall_s)
-        row, score = record.row, record.row.score
+        recorder = Recorder(setup, None)
+        row = run_trial(setup, agent, (recorder,), simulations=simulations, wall_s=wall_s)
+        assert isinstance(row, DriveTrialRow)
+        score = row.score
         assert (row.end, row.unwatched_from_s) == (end, from_s)
         assert score is not None
         assert score.driven_s == pytest.approx(30.0)
-        assert record.timeline["watched_until_s"] == from_s
+        assert recorder.lines[-1]["result"]["timeline"]["watched_until_s"] == from_s

@@ -11,13 +11,18 @@ import pytest
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import ActionError, TrafficError, TriggerNotReachedError, UnknownNameError
 from automotive_cosim.interface import trace
-from automotive_cosim.run.episode import End, EpisodeObserver, EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.script import ScriptedAgent
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
+
+from .conftest import Memory
 
 TASK = "hvac_fan_max"
 
@@ -150,7 +155,7 @@ def test_a_different_action_is_a_different_trace(run):
 
 
 def test_the_record_shows_the_drive_without_a_jump(run):
-    path = run("oracle").result.path
+    path = run("oracle").memory.told.path
     assert path[0].at_s < 0 < path[-1].at_s
     for before, after in pairwise(path):
         seconds = after.at_s - before.at_s
@@ -161,7 +166,7 @@ def test_the_record_shows_the_drive_without_a_jump(run):
 
 
 def test_the_timeline_is_in_order_and_begins_with_the_departure(run):
-    result = run("oracle").result
+    result = run("oracle").memory.told
     times = [entry.at_s for entry in result.timeline]
     kinds = [entry.kind for entry in result.timeline]
     assert times == sorted(times)
@@ -177,11 +182,11 @@ def test_watchers_hear_of_drive_steps_and_aftermath(run):
     assert memory.moved_s == sorted(memory.moved_s)
     assert memory.moved_s[0] < steps_s[0]
     assert memory.moved_s[-1] > steps_s[-1]
-    assert len(memory.results) == 1
+    assert len(memory.rows) == 1
 
 
 def test_a_road_that_fails_after_the_end_is_an_error_too(simulations):
-    class Fails(EpisodeObserver):
+    class Fails(TrialObserver):
         episode = None
 
         def begun(self, session, shot):
@@ -192,9 +197,9 @@ def test_a_road_that_fails_after_the_end_is_an_error_too(simulations):
                 raise TrafficError("the simulation died")
 
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
-    result = run_episode(setup, make_agent("oracle"), (Fails(),), simulations=simulations)
+    result = run_trial(setup, make_agent("oracle"), (Fails(),), simulations=simulations)
     assert (result.end, result.error) == (End.ERROR, "the simulation died")
-    assert (result.success, result.verdict) == (None, None)
+    assert (result.success, result.parts) == (None, None)
 
 
 def test_an_unreadable_answer_costs_a_step(run):
@@ -209,7 +214,7 @@ def test_a_failing_road_is_an_error_and_no_failure(run):
     assert result.end is End.ERROR
     assert result.error == "the simulation died"
     assert result.success is None
-    assert result.verdict is None
+    assert result.parts is None
     written = json.loads((episode.folder / "trial.json").read_text(encoding="utf-8"))
     assert written["row"]["error"] == "the simulation died"
     assert len(_lines(episode.folder)) == 2
@@ -234,7 +239,7 @@ def test_an_unknown_name_leaves_no_folder(run, tmp_path, names):
 
 def test_watching_changes_nothing(run, simulations):
     watched = run("oracle").result
-    alone = run_episode(
+    alone = run_trial(
         EpisodeSetup(task=TASK, scenario="grid", agent="oracle", model="none"),
         make_agent("oracle"),
         simulations=simulations,
@@ -255,9 +260,13 @@ def test_spare_traffic_is_for_a_situation_that_does_not_come_about_and_the_same_
 
     monkeypatch.setattr(SituationFinder, "find", never_in_the_first)
     spare = EpisodeSetup(TASK, scenario="grid", spare_traffic=(0, 1, 2))
-    results = [run_episode(spare, make_agent(name), simulations=simulations) for name in ("oracle", "no-op")]
+    memories = Memory(), Memory()
+    results = [
+        run_trial(spare, make_agent(name), (memory,), simulations=simulations)
+        for name, memory in zip(("oracle", "no-op"), memories, strict=True)
+    ]
     assert tried == [0, 0, 1] * 2
     assert [result.traffic_seed for result in results] == [1, 1]
-    assert {result.goal for result in results} == {draw(CATALOGUE[TASK], "first", 0).goal}
-    none_left = run_episode(replace(spare, spare_traffic=()), make_agent("no-op"), simulations=simulations)
+    assert {memory.told.goal for memory in memories} == {draw(CATALOGUE[TASK], "first", 0).goal}
+    none_left = run_trial(replace(spare, spare_traffic=()), make_agent("no-op"), simulations=simulations)
     assert (none_left.error_kind, none_left.traffic_seed) == ("TriggerNotReachedError", None)

@@ -87,6 +87,6 @@ def test_the_readmes_evaluation_takes_what_was_forecast():
     needs = forecast(whole, 1)
     assert needs.wall_s.low < 36 < 53 < needs.wall_s.high
     small, large = (
-        {job.warm_up_weight for job in whole if job.scenario == name} for name in ("beauce", "paris_centre")
+        {job.warm_up_weight for job in whole if job.in_scenario == name} for name in ("beauce", "paris_centre")
     )
     assert max(small) < min(large) / 2

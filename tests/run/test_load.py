@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from types import SimpleNamespace
 from typing import Any
 
@@ -49,6 +50,6 @@ def test_a_long_text_or_a_long_task_is_beyond_the_guideline() -> None:
 
 
 def test_an_episode_reports_it(run: Any) -> None:
-    load = run().result.as_json()["load"]
+    load = asdict(run().memory.told.load)
     assert load["interaction_s"] >= 0
     assert set(load) == {"interaction_s", "reading_s", "longest_reading_s", "within_guideline"}

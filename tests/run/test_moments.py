@@ -23,14 +23,14 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.run.batch import run_plan
-from automotive_cosim.run.collect import Collector
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.regrade import regrade
+from automotive_cosim.run.trial import run_trial
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.tasks import CATALOGUE
@@ -40,17 +40,17 @@ from ..geo.conftest import CAR, CLEAR, NOON
 
 @pytest.fixture(scope="session")
 def collected(simulations):
-    """An alert in vain on the grid: the collector and the result."""
+    """An alert in vain on the grid: what is kept, and the row."""
     setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "grid", agent="always-alert", model="none")
-    collector = Collector(EpisodeJob(setup))
-    result = run_episode(setup, make_agent("always-alert"), [collector], simulations=simulations)
-    assert result.success is False
-    return collector, result
+    recorder = Recorder(setup, None)
+    row = run_trial(setup, make_agent("always-alert"), [recorder], simulations=simulations)
+    assert row.success is False
+    return recorder, row
 
 
 @pytest.fixture
 def kept(collected, tmp_path):
-    judged = collected[0].record(collected[1]).judged
+    judged = collected[0].judged
     (tmp_path / "traces").mkdir()
     write_judged(tmp_path, "a", judged)
     return tmp_path, judged
@@ -77,14 +77,14 @@ def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
     again = judge(
         instance, judged.trace, judged.baseline, lambda: judged.counterfactual, judged.declared, judged.reason
     )
-    assert again == collected[1].verdict
+    assert PartsHeld.of(again) == collected[1].parts
 
 
 def test_the_cockpit_goes_through_a_drive_again_only_if_something_else_was_left_changed(collected):
     def asked():
         raise AssertionError("the counterfactual is asked for")
 
-    judged = collected[0].record(collected[1]).judged
+    judged = collected[0].judged
     instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
     untouched = judged.baseline
     assert judge(instance, untouched, untouched, asked, None, None).clean.ok
@@ -95,7 +95,7 @@ def test_the_cockpit_goes_through_a_drive_again_only_if_something_else_was_left_
 
 
 def test_an_agent_that_failed_has_no_success_even_where_silence_is_right(collected):
-    judged = collected[0].record(collected[1]).judged
+    judged = collected[0].judged
     instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
     told = (instance, judged.baseline, judged.baseline, lambda: judged.counterfactual, None, None)
     failed = judge(*told, "it crashed")
@@ -219,7 +219,7 @@ def test_doing_nothing_neither_harms_nor_averts(simulations):
     setup = EpisodeSetup(
         "phenomenon_front_window_fogged", "first", "grid", agent="no-op", model="none", max_steps=3
     )
-    result = run_episode(setup, make_agent("no-op"), simulations=simulations)
+    result = run_trial(setup, make_agent("no-op"), simulations=simulations)
     assert result.drive is not None
     assert result.drive == result.baseline_drive
 

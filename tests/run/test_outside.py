@@ -246,7 +246,7 @@ def test_an_agent_that_looks_everywhere_finds_nothing_of_the_job(outside, mine, 
     found = (mine / "found").read_text(errors="replace")
     assert "Watch my speed" in found, "it looked at too little"
     assert secret not in found.replace(str(mine / secret), "")
-    for word in ("EpisodeSetup(", "EpisodeJob(", "Instance(", "Task("):
+    for word in ("EpisodeSetup(", "Instance(", "Task("):
         assert word not in found
 
 

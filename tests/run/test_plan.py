@@ -55,9 +55,9 @@ def test_a_suite_bounds_words_but_not_ids():
 
 def test_the_hard_suite_has_its_own_limit_of_steps():
     jobs = plan(tasks=[HARD[0], "hvac_fan_max"], limits={"steps": 7, "hard_steps": 31}).jobs()
-    assert {(job.setup.task, job.setup.max_steps) for job in jobs} == {(HARD[0], 31), ("hvac_fan_max", 7)}
+    assert {(job.task, job.max_steps) for job in jobs} == {(HARD[0], 31), ("hvac_fan_max", 7)}
     usual = plan(tasks=[HARD[0], "hvac_fan_max"]).jobs()
-    assert {(job.setup.task, job.setup.max_steps) for job in usual} == {(HARD[0], 40), ("hvac_fan_max", 20)}
+    assert {(job.task, job.max_steps) for job in usual} == {(HARD[0], 40), ("hvac_fan_max", 20)}
 
 
 @pytest.mark.slow
@@ -70,7 +70,7 @@ def test_the_splits_share_out_the_episodes_between_them():
     assert not dev & test
     assert min(len(dev), len(test)) > len(whole) / 5
     for job in plan(**chosen).jobs():
-        assert job.split is split_of(job.task, job.setup.seed), "both halves of a pair are in one set"
+        assert job.split is split_of(job.entry, job.seed), "both halves of a pair are in one set"
     held_out = plan(**chosen, held_out=True)
     assert {job.split for job in held_out.jobs()} == {Split.TEST}
     with pytest.raises(UserError, match="held-out phrasings, which are all in test"):
@@ -80,11 +80,11 @@ def test_the_splits_share_out_the_episodes_between_them():
 def test_safety_tasks_run_both_halves_and_share_a_pair():
     jobs = plan(tasks=["safety", "general"], seeds=[0, 1]).jobs()
     for name, task in STANDARD.items():
-        mine = [job for job in jobs if job.setup.task == name]
+        mine = [job for job in jobs if job.task == name]
         assert len(mine) == 2 * len(task.halves)
-        assert {job.setup.half for job in mine} == set(task.halves)
+        assert {job.half for job in mine} == set(task.halves)
         for job in mine:
-            partners = [other for other in mine if other.setup.seed == job.setup.seed]
+            partners = [other for other in mine if other.seed == job.seed]
             assert {other.pair for other in partners} == {job.pair}
             assert bool(job.pair) == (len(task.halves) == 2)
 
@@ -93,36 +93,36 @@ def test_an_episode_of_an_agent_without_a_model_stands_once():
     jobs = make_plan(
         {"agents": ["oracle", "t3a"], "tasks": ["hvac_fan_max"], "models": ["rules", "a/b", "a?b"]}
     ).jobs()
-    assert sorted(job.setup.model for job in jobs) == ["a/b", "a?b", "none", "rules"]
+    assert sorted(job.model for job in jobs) == ["a/b", "a?b", "none", "rules"]
     assert len({job.id for job in jobs}) == 4
 
 
 def test_tasks_go_to_the_scenarios_they_can_run_in():
     chosen = {"tasks": ["road_speed_80_in_50", "hvac_fan_max"], "scenarios": ["grid", "london"]}
     there = plan(**chosen)
-    assert {(job.setup.task, job.scenario) for job in there.jobs()} == {
+    assert {(job.task, job.in_scenario) for job in there.jobs()} == {
         ("hvac_fan_max", "grid"), ("hvac_fan_max", "london"),
     }  # fmt: skip
     assert there.left_out() == ("road_speed_80_in_50",)
     wide = plan(**chosen, everywhere=True)
-    assert {job.setup.task for job in wide.jobs()} == set(chosen["tasks"])
+    assert {job.task for job in wide.jobs()} == set(chosen["tasks"])
     assert wide.left_out() == ()
     foreign = plan(tasks=chosen["tasks"], scenarios=["/elsewhere/grid"])
-    assert {job.setup.task for job in foreign.jobs()} == set(chosen["tasks"])
+    assert {job.task for job in foreign.jobs()} == set(chosen["tasks"])
     for scenario in CATALOGUE["hvac_fan_max"].runs_in:
         assert plan(tasks=["hvac_fan_max"], scenarios=[scenario]).jobs()
 
 
 @pytest.mark.parametrize("scenario", scenarios.shipped())
 def test_a_scenario_gets_whole_pairs_and_leaves_its_own_tasks_as_they_are(scenario):
-    own = {(job.setup.task, job.setup.half) for job in plan(seeds=[3]).jobs() if job.scenario == scenario}
+    own = {(job.task, job.half) for job in plan(seeds=[3]).jobs() if job.in_scenario == scenario}
     there = plan(seeds=[3], scenarios=[scenario]).jobs()
-    assert {job.scenario for job in there} <= {scenario}
-    for task in {job.setup.task for job in there}:
-        mine = [job for job in there if job.setup.task == task]
-        assert {job.setup.half for job in mine} == set(CATALOGUE[task].halves)
+    assert {job.in_scenario for job in there} <= {scenario}
+    for task in {job.task for job in there}:
+        mine = [job for job in there if job.task == task]
+        assert {job.half for job in mine} == set(CATALOGUE[task].halves)
         for job in mine:
-            assert (job.setup.scenario is None) == ((task, job.setup.half) in own)
+            assert (job.scenario is None) == ((task, job.half) in own)
 
 
 def test_a_plan_with_nothing_to_run_says_why():
@@ -146,7 +146,7 @@ def test_ids_are_good_for_files_and_tell_everything_apart(tasks):
 def test_held_out_phrasings_reach_the_episodes():
     both = plan(tasks=["road_speed_80_in_50", "hvac_fan_max"], held_out=True)
     jobs = both.jobs()
-    assert all(job.setup.held_out for job in jobs)
+    assert all(job.held_out for job in jobs)
     assert len({job.pair for job in jobs if job.pair}) == 1
     assert make_plan(both.as_json()) == both
     assert not {job.id for job in jobs} & {job.id for job in plan(tasks=["hvac_fan_max"]).jobs()}
@@ -156,8 +156,8 @@ def test_repeats_are_said_in_other_phrasings_where_that_is_asked_for():
     tasks, trial = ("hvac_fan_max",), {"task": "media_volume_percent", "seed": 3}
     plain = make_plan({"agents": ["oracle"], "tasks": tasks, "trials": [trial], "repeats": 3})
     other = replace(plain, rephrase=True)
-    assert {job.setup.redrawn for job in plain.jobs()} == {0}
-    assert {(job.setup.task, job.repeat, job.setup.redrawn) for job in other.jobs()} == {
+    assert {job.redrawn for job in plain.jobs()} == {0}
+    assert {(job.task, job.repeat, job.redrawn) for job in other.jobs()} == {
         (task, repeat, repeat) for task in (*tasks, "media_volume_percent") for repeat in range(3)
     }
     ids = {job.id for job in plain.jobs()}
@@ -177,7 +177,7 @@ def test_the_order_of_episodes_tells_no_half_from_the_other():
     """An agent that counts how often it heard a goal must not know by that which half it is in."""
     places: dict[tuple, dict[str, int]] = {}
     for place, job in enumerate(plan(tasks=["safety"]).jobs()):
-        places.setdefault((job.setup.task, job.simulation), {})[job.setup.half] = place
+        places.setdefault((job.task, job.simulation), {})[job.half] = place
     first = [halves["first"] < halves["second"] for halves in places.values() if len(halves) == 2]
     assert len(first) > 70
     assert 0.35 < sum(first) / len(first) < 0.65
@@ -189,7 +189,7 @@ def test_a_file_says_what_the_options_say(tmp_path):
     made = make_plan(read_plan(path))
     assert made.seeds == (0, 1)
     assert made.limits == Limits(steps=5, wall_s=60.0)
-    assert {job.setup.max_steps for job in made.jobs()} == {5}
+    assert {job.max_steps for job in made.jobs()} == {5}
     assert make_plan(made.as_json()) == made
 
 
@@ -253,11 +253,11 @@ def test_what_only_the_picture_tells_is_not_planned_for_the_list_alone():
     pictured = set(choose(["picture"], "hard"))
     assert len(pictured) >= 8
     for made in of_each.values():
-        assert {job.setup.task for job in made.jobs()} == pictured
+        assert {job.task for job in made.jobs()} == pictured
         assert made.beyond_the_list() == ()
     mixed = plan(tasks=["picture", "hard_which_nora"], suite="hard", see=["tree", "both"])
     assert set(mixed.beyond_the_list()) == pictured
-    assert {job.setup.task for job in mixed.jobs() if job.setup.conditions.see == "tree"} == {"hard_which_nora"}
+    assert {job.task for job in mixed.jobs() if job.conditions.see == "tree"} == {"hard_which_nora"}
     with pytest.raises(UserError, match="need the picture, which these conditions hide"):
         plan(tasks=["picture"], suite="hard", see=["tree"]).check(dry=True)
 
@@ -265,7 +265,7 @@ def test_what_only_the_picture_tells_is_not_planned_for_the_list_alone():
 def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
     chosen = ["hvac_fan_max", "hard_car_wash", "hard_language_midway"]
     both = plan(tasks=chosen, language=["en", "fr"])
-    assert {(job.setup.task, job.setup.conditions.language) for job in both.jobs()} == {
+    assert {(job.task, job.conditions.language) for job in both.jobs()} == {
         ("hard_car_wash", "en"),
         ("hard_car_wash", "fr"),
     }
@@ -273,9 +273,7 @@ def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
     assert both.left_out() == ()
     english = plan(tasks=chosen)
     assert english.unspoken() == ()
-    assert {job.id for job in english.jobs()} > {
-        job.id for job in both.jobs() if job.setup.conditions.language == "en"
-    }
+    assert {job.id for job in english.jobs()} > {job.id for job in both.jobs() if job.conditions.language == "en"}
     assert len({job.situation for job in both.jobs()}) == len(both.jobs())
 
 

@@ -12,22 +12,25 @@ from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import GroundArea, GroundKind, LaneShape, RoadNetwork, RoadShapes, RoadSnapshot
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import ROAD
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.road import read_record, read_road
 from automotive_cosim.run.road_recorder import RoadRecorder, RoadWriter, along
+from automotive_cosim.run.trial import run_trial
+
+from .conftest import Memory
 
 
 @pytest.mark.sumo
 def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
     setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", agent="oracle", model="none")
-    blind = run_episode(setup, make_agent("oracle"), simulations=simulations)
-    seeing = run_episode(
-        setup, make_agent("oracle"), [RoadRecorder(tmp_path, setup.about)], simulations=simulations
-    )
+    memory = Memory()
+    blind = run_trial(setup, make_agent("oracle"), [memory], simulations=simulations)
+    path = memory.told.path
+    seeing = run_trial(setup, make_agent("oracle"), [RoadRecorder(tmp_path, setup.about)], simulations=simulations)
     assert seeing == blind, "the trace's hash included"
     record = read_record(tmp_path / ROAD)
-    assert [second.at_s for second in record.seconds] == [sample.at_s for sample in blind.path[1:]]
-    for sample, second in zip(blind.path[1:], record.seconds, strict=True):
+    assert [second.at_s for second in record.seconds] == [sample.at_s for sample in path[1:]]
+    for sample, second in zip(path[1:], record.seconds, strict=True):
         (ego,) = (each for each in second.vehicles if each.vehicle_id == "ego")
         assert (ego.x_m, ego.y_m) == pytest.approx((sample.x_m, sample.y_m), abs=0.006)
         assert (ego.heading_deg - sample.heading_deg) % 360 == pytest.approx(0.0, abs=0.06)
@@ -40,7 +43,7 @@ def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
     assert [row[0] for row in baseline] == [
         second.at_s for second in record.seconds if 0 <= second.at_s <= blind.sim_seconds
     ]
-    at_hand_over = next(sample for sample in blind.path if sample.at_s == 0)
+    at_hand_over = next(sample for sample in path if sample.at_s == 0)
     assert baseline[0][1:3] == [at_hand_over.x_m, at_hand_over.y_m]
 
     path = tmp_path / ROAD

@@ -10,7 +10,8 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.jobs import DriveJob, Limits
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.jobs import Limits
 from automotive_cosim.safety.space import LIBRARY, FactorChoices, FactorRange, read_space, space_file
 from automotive_cosim.safety.trying import trial_of
 from tests.laws import over
@@ -39,8 +40,8 @@ def test_every_space_can_be_searched(name: str) -> None:
         ends = factor.values if isinstance(factor, FactorChoices) else (factor.least, factor.most, factor.nominal)
         for value in ends:
             job = trial_of({**space.nominal, factor.name: value}).job("silent", "none", 0, Limits(), ())
-            assert isinstance(job, DriveJob)
-            assert job.setup.script.staged == () or staged != "nothing"
+            assert isinstance(job, DriveSetup)
+            assert job.script.staged == () or staged != "nothing"
 
 
 def test_neither_a_file_nor_a_name_is_refused(tmp_path: Path) -> None:

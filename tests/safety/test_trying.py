@@ -12,7 +12,7 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.trivial import AlwaysAlert
 from automotive_cosim.contracts import Json
 from automotive_cosim.report.results import read_results
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.settings import Pictures
@@ -44,8 +44,8 @@ def plan() -> Plan:
 
 @pytest.mark.slow
 def test_a_search_finds_what_is_planted_and_goes_on(tmp_path: Path, simulations: Simulations) -> None:
-    def run(job: TrialJob, folder: Path) -> TrialRow:
-        agent: Agent = AlwaysAlert() if job.setup.conditions.latency_s > 5 else Oracle()
+    def run(job: TrialSetup, folder: Path) -> TrialRow:
+        agent: Agent = AlwaysAlert() if job.conditions.latency_s > 5 else Oracle()
         return run_with(nullcontext(agent), job, folder, Pictures.NONE, simulations)
 
     folder = tmp_path / "search"

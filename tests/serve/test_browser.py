@@ -19,8 +19,7 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.formats.writing import is_being_written, mark_as_written
-from automotive_cosim.run.episode import EpisodeObserver
-from automotive_cosim.run.observer import Shot
+from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.trial_folder import shown
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
@@ -314,7 +313,7 @@ def test_a_person_practises_by_keyboard_alone(
     simulations: Simulations,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("automotive_cosim.serve.play.Film", lambda folder: EpisodeObserver())  # it takes seconds
+    monkeypatch.setattr("automotive_cosim.serve.play.Film", lambda folder: TrialObserver())  # it takes seconds
     page = opened(serving(tmp_path, game=Game(tmp_path, "grid", simulations)), "#/play?task=hvac_fan_max")
     page.get_by_role("checkbox").focus()
     page.keyboard.press("Space")

@@ -45,14 +45,14 @@ def test_everybody_plays_everything_and_never_both_halves_in_a_row(people: int, 
         orders = deal(jobs, tuple(f"person {number}" for number in range(people)), order_seed)
         assert sorted(job.id for order in orders.values() for job in order) == sorted(job.id for job in jobs)
         for name, order in orders.items():
-            assert {job.setup.model for job in order} == {name}
-            assert all(before.setup.task != after.setup.task for before, after in pairwise(order))
+            assert {job.model for job in order} == {name}
+            assert all(before.task != after.task for before, after in pairwise(order))
 
 
 def test_half_of_the_people_meet_each_half_first() -> None:
     _, orders = dealt(6, PAIRS)
     for task in PAIRS:
-        first = [next(job.setup.half for job in order if job.setup.task == task) for order in orders.values()]
+        first = [next(job.half for job in order if job.task == task) for order in orders.values()]
         assert Counter(first) == {"first": 3, "second": 3}
 
 

@@ -14,9 +14,9 @@ import pytest
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.results import read_results
+from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.executor import failed
-from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.serve import play
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.study import LOG, QUESTIONS, PeopleStudy
@@ -31,9 +31,9 @@ ANSWERS = dict.fromkeys(QUESTIONS, 4)
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Episodes end as they begin: those of the first half are won, hvac_fan_max could not be judged."""
 
-    def begin(game: play.Game, job: EpisodeJob, folder: Path, keep: Callable[[Any], None]) -> None:
-        won = job.setup.half == "first"
-        if job.setup.task == "hvac_fan_max" and job.setup.model == "fox":
+    def begin(game: play.Game, job: EpisodeSetup, folder: Path, keep: Callable[[Any], None]) -> None:
+        won = job.half == "first"
+        if job.task == "hvac_fan_max" and job.model == "fox":
             keep(failed(job, "TrafficError", "it broke"))
         else:
             keep(

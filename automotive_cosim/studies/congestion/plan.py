@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.incidents import AnyIncident, EgoIncident, RushHour
-from automotive_cosim.run.executor import LoneJob
+from automotive_cosim.run.executor import Job
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.studies.calls.flow import Advice, SignalControl
@@ -111,7 +111,7 @@ class CongestionPlan(CongestionSettings):
 
 
 @dataclass(frozen=True, slots=True)
-class CongestionJob(LoneJob):
+class CongestionJob(Job):
     """The traffic of one seed."""
 
     plan: CongestionPlan

@@ -22,7 +22,7 @@ import numpy as np
 
 from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.run.batch import BatchKind
-from automotive_cosim.run.executor import LoneJob, alone
+from automotive_cosim.run.executor import Job, alone
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.stage import doing
 from automotive_cosim.scenarios import Scenario, variant
@@ -100,7 +100,7 @@ class DaysPlan(DaysSettings):
 
 
 @dataclass(frozen=True, slots=True)
-class DaysJob(LoneJob):
+class DaysJob(Job):
     """All days of one share and seed."""
 
     plan: DaysPlan

@@ -8,7 +8,7 @@ from itertools import product
 
 from automotive_cosim.agents import make_agent
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.run.executor import LoneJob
+from automotive_cosim.run.executor import Job
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.scenarios.wording import KINDS, read_line
@@ -129,7 +129,7 @@ class StudyPlan(RerouteSettings):
 
 
 @dataclass(frozen=True, slots=True)
-class StudyJob(LoneJob):
+class StudyJob(Job):
     """One drive of a study, with all its decisions."""
 
     plan: StudyPlan
