@@ -333,7 +333,7 @@ def test_after_a_manoeuvre_the_driver_ahead_is_who_they_were(
         others = (each for each in of.getIDList() if not each.startswith(("ego", "automotive_cosim.breakdown")))
         return {each: tuple(way(each) for way in ways) for each in others}
 
-    before: dict[str, tuple[float, ...]] = {}
+    before = now = dict[str, tuple[float, ...]]()
     touched: set[str] = set()
     for _ in range(90):
         drive.advance(1.0)
