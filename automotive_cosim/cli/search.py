@@ -64,7 +64,7 @@ def search(
     from automotive_cosim.run.settings import Budget
     from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
     from automotive_cosim.safety.findings import as_json as findings_json
-    from automotive_cosim.safety.hunt import NominalFailureError, hunt, try_carefully
+    from automotive_cosim.safety.hunt import hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import even_points, make_sampler
     from automotive_cosim.safety.space import read_space, space_file
@@ -135,28 +135,14 @@ def search(
 
         note()
         run.tell = note
-        if is_parallel and run(space.nominal, 0).held:
+        if is_parallel and not run(space.nominal, 0).error:
             try:
                 run.ahead(
                     even_points(make_sampler(how.sampler, space, laid, how.seed), min(laid, may_use.most_points))
                 )
             except KeyboardInterrupt:
                 run.stop = "interrupted"
-        try:
-            found = hunt(
-                space,
-                run,
-                chooses,
-                may_use.most_points,
-                most_failures=how.failures,
-                tell=tell,
-            )
-        except NominalFailureError as error:
-            told = f"{error}; its trial is in {folder}, which `report` reads"
-            if order.at_most is None or not error.is_judged:
-                raise UserError(told) from error
-            typer.echo(told, err=True)
-            raise typer.Exit(1) from error
+        found = hunt(space, run, chooses, may_use.most_points, most_failures=how.failures, tell=tell)
         found.interrupted |= bool(run.stop)
         if found.minimal and agent not in CAREFUL and not found.interrupted:
             careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})
@@ -188,6 +174,8 @@ def too_many(found: Hunt, at_most: int) -> str:
 
     samples = judged(found.samples)
     failed = sum(each.outcome.failed for each in samples)
+    if any(not each.changed for each in found.minimal):
+        return "it fails with everything nominal"
     if not samples:
         return "nothing was due in any sample, so that nothing is known"
     return f"{failed} of {counted(len(samples), 'sample')} failed, more than {at_most}" if failed > at_most else ""

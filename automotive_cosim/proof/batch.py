@@ -73,11 +73,16 @@ class ProofJob(Job):
 
     task: str
     seed: int
-    simulation: tuple[str, int]
+    group: tuple[str, int]
     """Scenario, group of its tasks, and seed."""
     after: str
     """See ``Prover.prove``. It follows from the plan and not from what a worker has just done, so the distribution
     of jobs does not affect the result."""
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """Its group: an inherited property would be a field's default."""
+        return self.group
 
     @property
     def wall_s(self) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
@@ -29,6 +30,8 @@ class Coverage:
     """What is counted: ``episode``, ``drive``, or ``trial`` for both."""
     problem: str = ""
     """Why it is not known what was planned; then ``not_run`` is empty."""
+    nothing_due: int = 0
+    """Judged drives in which nothing required an act: they say nothing about an agent."""
 
     @property
     def planned(self) -> int:
@@ -42,6 +45,7 @@ class Coverage:
 
     def __str__(self) -> str:
         errors = f", {counted(self.errors, 'error')}" if self.errors else ""
+        errors = (f", nothing was due in {self.nothing_due:,} of them" if self.nothing_due else "") + errors
         if self.problem:
             known = f"{counted(self.judged, self.unit)} judged{errors}"
             return f"{known}; the rest of the plan is not known: {self.problem}"
@@ -58,8 +62,9 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
     """
     judged = sum(row.outcome is not None for row in rows.values())
     errors, unit = len(rows) - judged, unit_of(manifest["plan"])
+    idle = sum(isinstance(row, DriveTrialRow) and row.has_nothing_due for row in rows.values())
     if manifest.get("episodes") == len(rows):  # even if the catalogue has changed since
-        return Coverage(judged, errors, shared=frozenset(rows), unit=unit)
+        return Coverage(judged, errors, shared=frozenset(rows), unit=unit, nothing_due=idle)
     jobs: dict[str, TrialSetup] = {}
     try:
         jobs |= {job.id: job for job in make_plan(manifest["plan"]).jobs()}
@@ -67,7 +72,7 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
     except UserError as error:
         problem = " ".join(str(error).split())
     if problem:
-        return Coverage(judged, errors, shared=frozenset(rows), unit=unit, problem=problem)
+        return Coverage(judged, errors, shared=frozenset(rows), unit=unit, problem=problem, nothing_due=idle)
     not_run = [job for job in jobs.values() if job.id not in rows]
     waiting = {job.instance for job in not_run}
     shared = [job for job in jobs.values() if job.instance not in waiting]
@@ -78,6 +83,7 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
         frozenset(job.id for job in shared),
         len({job.instance for job in shared}) if not_run else None,
         unit,
+        nothing_due=idle,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from typing import Any
 
 from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.safety.objective import TriedOutcome
@@ -18,6 +19,8 @@ BISECTIONS = 4
 
 MOST_STALE = 1000
 """Points in a row that were all known, after which a space of few points is taken to be used up."""
+MOST_BESIDE = 3
+"""Points that passed of which a neighbour of a failing nominal point is made."""
 UNTOLD = 2.0
 """What a sampler is told of a point without a margin: further from failing than any pass, so that it is drawn
 elsewhere. A trial in which nothing was due is no success."""
@@ -26,19 +29,6 @@ MOST_ASKED = 20
 
 Evaluate = Callable[[SearchPoint, int], TriedOutcome]
 """Runs a point; the number says which repeat."""
-
-
-class NominalFailureError(UserError):
-    """An agent that does not pass where every factor is nominal, so that no factor can be to blame.
-
-    Args:
-        message: what happened, and what to do.
-        is_judged: whether the trial was judged, and failed.
-    """
-
-    def __init__(self, message: str, *, is_judged: bool) -> None:
-        super().__init__(message)
-        self.is_judged = is_judged
 
 
 class Phase(StrEnum):
@@ -107,7 +97,7 @@ class MinimalFailure:
     def words(self, space: Space) -> str:
         """The conditions that trigger it."""
         if not self.changed:
-            return "as soon as everything is nominal"
+            return "everything nominal"
         told_all = []
         for name in self.changed:
             factor, value = space.factor(name), self.point[name]
@@ -170,20 +160,16 @@ def hunt(
         What it found; after an interruption, what it had found by then.
 
     Raises:
-        NominalFailureError: the nominal point fails, or cannot be run.
+        UserError: the nominal point is not judged.
         BudgetSpentError: ``evaluate`` refused the nominal point; a later refusal ends the search.
         KeyboardInterrupt: interrupted in the nominal point; a later interruption ends the search.
     """
     found = Hunt(space)
     run = _Runner(found, evaluate)
     nominal = run(Phase.NOMINAL, space.nominal).outcome
-    if not nominal.held:
-        why = f"fails ({nominal.why})" if nominal.failed else f"is not judged ({nominal.error})"
-        raise NominalFailureError(
-            f"the nominal point {why}; give nominal values, the first of each list, under which the agent passes",
-            is_judged=nominal.failed,
-        )
-    stale = 0
+    if not nominal.held and not nominal.failed:
+        raise UserError(f"the nominal point is not judged ({nominal.error}); give another, the first of each list")
+    stale, at_once = 0, [found.tried[0]] if nominal.failed else []
     for _ in range(MOST_ASKED * budget):
         if found.run >= budget:
             break
@@ -193,6 +179,8 @@ def hunt(
         point, even = sampler.ask()
         stale = 0 if run.is_new(point) else stale + 1
         try:
+            while at_once:
+                _reduce(run, at_once.pop(), most_failures)
             tried = run(Phase.SAMPLE, point, even=even)
             margin = tried.outcome.margin
             sampler.tell(point, UNTOLD if margin is None else margin)
@@ -205,6 +193,12 @@ def hunt(
         except KeyboardInterrupt:
             found.stopped, found.interrupted = "interrupted", True
             break
+    try:
+        _look_beside(run)
+    except BudgetSpentError as spent:
+        found.stopped = str(spent)
+    except KeyboardInterrupt:
+        found.stopped, found.interrupted = "interrupted", True
     return found
 
 
@@ -273,6 +267,20 @@ def _sort_out(run: _Runner, first: Tried, most: int) -> None:
         found.minimal.append(minimise(run, first))
 
 
+def _look_beside(run: _Runner) -> None:
+    """Gives a failure of the nominal point, from which nothing leads back, its neighbour from what has passed."""
+    found = run.found
+    for number, each in enumerate(found.minimal):
+        if not each.changed and each.neighbour is None and not found.stopped:
+            held = sorted(
+                (tried for tried in found.samples if tried.outcome.held),
+                key=lambda tried: found.space.distance(tried.point, found.space.nominal),
+            )
+            near, differs = _neighbour(run, each.point, held[:MOST_BESIDE])
+            if near is not None:
+                found.minimal[number] = replace(each, **_beside(run, near, differs))
+
+
 def minimise(run: _Runner, first: Tried) -> MinimalFailure:
     """Takes factors back to nominal while it still fails, then bisects the numbers that are left.
 
@@ -314,19 +322,21 @@ def minimise(run: _Runner, first: Tried) -> MinimalFailure:
                     break
     last = next(each for each in reversed(failing) if each is first or run.is_steady(each.point))
     point = dict(last.point)
-    neighbour, differs = _neighbour(run, point, passing)
     changed = tuple(each.name for each in space.factors if point[each.name] != each.nominal)
-    return MinimalFailure(
-        first,
-        point,
-        changed,
-        None if neighbour is None else neighbour.point,
-        differs,
-        last.outcome.why,
-        last.outcome.trial,
-        "" if neighbour is None else neighbour.outcome.trial,
-        neighbour is None or all(each.passed for each in (neighbour.outcome, *run.again(neighbour.point))),
-    )
+    made = MinimalFailure(first, point, changed, None, "", last.outcome.why, last.outcome.trial, "")
+    neighbour, differs = _neighbour(run, point, passing)
+    return made if neighbour is None else replace(made, **_beside(run, neighbour, differs))
+
+
+def _beside(run: _Runner, neighbour: Tried, differs: str) -> dict[str, Any]:
+    """What a minimal failure says of the point beside it."""
+    outcomes = (neighbour.outcome, *run.again(neighbour.point))
+    return {
+        "neighbour": neighbour.point,
+        "differs": differs,
+        "neighbour_trial": neighbour.outcome.trial,
+        "neighbour_passes": all(each.passed for each in outcomes),
+    }
 
 
 def _neighbour(run: _Runner, point: SearchPoint, passing: Sequence[Tried]) -> tuple[Tried | None, str]:

@@ -5,6 +5,7 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.plan import choose, make_plan, read_plan
 from automotive_cosim.run.trial import Limits
 from automotive_cosim.tasking.sets import Split, Suite
@@ -282,3 +283,8 @@ def test_a_language_that_is_not_there_is_refused():
         plan(language=["es"])
     with pytest.raises(UserError, match="has phrasings in German and Japanese; those of the hard suite do"):
         plan(tasks=["hvac"], language=["de", "ja"]).check()
+
+
+def test_drives_in_which_nothing_was_due_are_told_beside_those_that_are_judged():
+    there = Coverage(5, 1, unit="drive", nothing_due=2)
+    assert str(there) == "5 of 6 planned drives judged, nothing was due in 2 of them, 1 error"

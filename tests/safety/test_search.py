@@ -22,7 +22,7 @@ from automotive_cosim.run.settings import Budget
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit, progress_in_words
 from automotive_cosim.safety.curves import curves, means
 from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, sentence, tables, unseen
-from automotive_cosim.safety.hunt import REPEATS, Hunt, NominalFailureError, Phase, hunt, try_carefully
+from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_carefully
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.page import suite
 from automotive_cosim.safety.samplers import SAMPLERS, RandomSampler, even_points, make_sampler
@@ -149,15 +149,18 @@ def test_neither_a_minimal_failure_nor_what_is_beside_it_is_chance(odd: int) -> 
             assert evaluate(each.neighbour, repeat).passed
 
 
-def test_a_nominal_point_that_fails_is_refused() -> None:
-    with pytest.raises(
-        NominalFailureError, match=r"the nominal point fails \(late\); give nominal values"
-    ) as failed:
-        searched(of=lambda point: -1.0)
-    assert failed.value.is_judged
-    with pytest.raises(NominalFailureError, match="is not judged") as lost:
+def test_a_nominal_point_that_fails_is_a_finding_with_what_passes_beside_it() -> None:
+    found = searched(of=lambda point: -0.5 if point["driver"] == "average" else 0.5)
+    (minimal,) = found.minimal
+    assert (minimal.point, minimal.changed, minimal.words(SPACE)) == (SPACE.nominal, (), "everything nominal")
+    assert minimal.differs == "driver"
+    assert minimal.beside in ("passes with driver calm", "passes with driver hurried")
+    assert all(minimal.covers(SPACE, each.point) for each in found.samples if each.outcome.failed)
+    assert too_many(found, 64) == "it fails with everything nominal"
+    (alone,) = searched(of=lambda point: -1.0).minimal
+    assert (alone.neighbour, alone.beside) == (None, "")
+    with pytest.raises(UserError, match="the nominal point is not judged"):
         hunt(SPACE, lambda *_: TriedOutcome(None, False, error="SUMO"), RandomSampler(SPACE, 9, default_rng(0)), 9)
-    assert not lost.value.is_judged
 
 
 def test_combinations_that_cannot_be_run_cost_nothing() -> None:
