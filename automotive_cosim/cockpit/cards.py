@@ -101,9 +101,7 @@ def switch(
 
     Args:
         signal: what it turns.
-        state: of the cockpit.
-        key: if it is not that of the signal's control.
-        name: as ``key``.
+        key: if it is not that of the signal's control; so for ``name``.
         group: tells it apart from those of the same name in other groups for whoever hears it alone.
         disabled: why it cannot be used now.
     """
@@ -136,11 +134,8 @@ def levels(
 
     Args:
         signal: what it sets.
-        state: of the cockpit.
         steps: each value and what it is called.
-        key: if it is not that of the signal's control.
-        name: as ``key``.
-        icon: as ``key``.
+        key: if it is not that of the signal's control; so for ``name`` and ``icon``.
         group: as of ``switch``.
         told: its description, if it is another one.
     """
@@ -276,9 +271,7 @@ def schedule(
     """A switch, and the time of day at which something is done, half an hour earlier or later at a tap.
 
     Args:
-        key: of the switch; those of the time begin with it.
-        text: of the switch.
-        icon: of the switch.
+        key: of the switch, like ``text`` and ``icon``; those of the time begin with it.
         timer: what is set.
         keep: what holds a timer.
         ready: said when it is switched on.
@@ -337,7 +330,6 @@ def rows(
     Args:
         key: its own, under which the state remembers how far it is scrolled.
         name: what it lists.
-        state: of the cockpit.
         entries: what is listed.
         entry: makes the row of an entry, from its index.
         columns: entries side by side.
