@@ -464,6 +464,11 @@ class Cockpit:
         road.repeat(self._state, record, frozenset(keys))
         self._tree = None
 
+    def give(self, record: CommandRecord) -> None:
+        """Gives a recorded command once more, in full; what it asks of the road waits for ``drain_requests``."""
+        record.command.repeat(self._state, record, record.aims)
+        self._tree = None
+
     # --- its visible state -----------------------------------------------------------------------------
 
     @property

@@ -283,11 +283,8 @@ def _channels(names: list[str] | None) -> frozenset[Channel]:
 
 
 def _turn(turn: EpisodeTurn) -> CallToolResult:
-    picture = turn.picture
-    if picture is None:
-        return _result(turn.as_json())
-    data = base64.b64encode(picture).decode()
-    return _result(turn.as_json(), ImageContent(type="image", data=data, mime_type="image/png"))
+    data = (base64.b64encode(picture).decode() for picture in turn.pictures)
+    return _result(turn.as_json(), *(ImageContent(type="image", data=each, mime_type="image/png") for each in data))
 
 
 def _result(value: Json, *pictures: ContentBlock) -> CallToolResult:

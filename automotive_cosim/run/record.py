@@ -22,7 +22,7 @@ from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.contracts import KMH_PER_MPS, Json
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, screenshot
+from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, road_view, screenshot
 from automotive_cosim.formats.writing import (
     add_line,
     check_writable,
@@ -173,6 +173,9 @@ class Recorder(TrialObserver):
             with drafted(screenshot(self.folder, step.number)) as file:
                 Image.fromarray(shot.screenshot).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
             self._pictured = step.number, shot.screenshot
+        if (camera := shot.session.observation.camera) is not None:
+            with drafted(road_view(self.folder, step.number)) as file:
+                Image.fromarray(camera).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
         told, begins = step.as_json(), "hand-over"
         if shot.session.observation.on_watch:
             told["context"], begins = shot.session.observation.context or "", "departure"  # as the agent was told

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from automotive_cosim.agents.marks import listed, png
+from automotive_cosim.agents.marks import listed, png, road
 from automotive_cosim.agents.prompt import listing
 from automotive_cosim.cockpit.restrictions import in_words
 from automotive_cosim.contracts import Json, Observation
@@ -28,6 +28,11 @@ class EpisodeTurn:
         """The screen as a PNG file; None for an agent that is not given it."""
         screenshot = self.observation.screenshot
         return None if screenshot is None else png(screenshot)
+
+    @property
+    def pictures(self) -> tuple[bytes, ...]:
+        """The screen and the view through the windshield, as far as the agent is given them."""
+        return (*([] if self.picture is None else [self.picture]), *road(self.observation))
 
     def as_json(self) -> Json:
         """The turn as a JSON object, without the picture.

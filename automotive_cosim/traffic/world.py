@@ -283,6 +283,10 @@ class World:
         self._incidents.add(incident)
         self._has_incidents = True
 
+    def closed(self) -> tuple[str, ...]:
+        """See ``Incidents.closed``."""
+        return self._incidents.closed
+
     def slowed(self) -> dict[str, float]:
         """Edges with another limit than the scenario has there now, and that limit as a share of it."""
         return self._incidents.slowed
@@ -463,7 +467,7 @@ class _EgoRoad:
         return self._pedals.alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        return self._lookout.look()
+        return replace(self._lookout.look(), closed=self._world.closed())
 
     def shapes(self) -> RoadShapes:
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
