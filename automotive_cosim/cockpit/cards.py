@@ -6,6 +6,7 @@ A control is named by its signal alone (``controls``); where a screen has anothe
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import TypeVar
 
 from automotive_cosim.cockpit.commands import Put, Set
@@ -17,7 +18,7 @@ from automotive_cosim.cockpit.messages import Back, Focus, Show
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import HMI, Signal, Signals
-from automotive_cosim.cockpit.state import Message, State
+from automotive_cosim.cockpit.state import AppData, Message, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.timer import Timer
 from automotive_cosim.cockpit.values import MILE_KM
@@ -100,9 +101,7 @@ def switch(
 
     Args:
         signal: what it turns.
-        state: of the cockpit.
-        key: if it is not that of the signal's control.
-        name: as ``key``.
+        key: if it is not that of the signal's control; so for ``name``.
         group: tells it apart from those of the same name in other groups for whoever hears it alone.
         disabled: why it cannot be used now.
     """
@@ -135,11 +134,8 @@ def levels(
 
     Args:
         signal: what it sets.
-        state: of the cockpit.
         steps: each value and what it is called.
-        key: if it is not that of the signal's control.
-        name: as ``key``.
-        icon: as ``key``.
+        key: if it is not that of the signal's control; so for ``name`` and ``icon``.
         group: as of ``switch``.
         told: its description, if it is another one.
     """
@@ -269,24 +265,35 @@ def _step(signal: Signal[float], signals: Signals) -> str:
     return Quantity(f"{signal.step:g}")
 
 
-def time_setter(key: str, timer: Timer, put: Callable[[Timer], Put]) -> Block:
-    """A time of day, earlier and later by half an hour; ``put`` keeps the one that was set."""
+def schedule(
+    key: str, text: str, icon: Icon, timer: Timer, keep: Callable[[Timer], AppData], ready: str, off: str
+) -> tuple[Tile, Block]:
+    """A switch, and the time of day at which something is done, half an hour earlier or later at a tap.
 
-    def step(name: str, words: str, icon: Icon, by_min: int) -> Button:
-        return Button(
-            key=f"{key}.{name}",
-            description=words,
-            icon=icon,
-            on_tap=put(timer.moved(by_min)),
-            on_hold=put(timer.moved(by_min * HELD_STEPS)),
-        )
+    Args:
+        key: of the switch, like ``text`` and ``icon``; those of the time begin with it.
+        timer: what is set.
+        keep: what holds a timer.
+        ready: said when it is switched on.
+        off: said when it is switched off.
+    """
 
+    def moved(by_min: int) -> Put:
+        new = timer.moved(by_min)
+        return Put(keep(new), say("The time is {time}", time=new.shown))
+
+    def step(name: str, words: str, by: Icon, by_min: int) -> Button:
+        hold = moved(by_min * HELD_STEPS)
+        return Button(key=f"{key}.{name}", description=words, icon=by, on_tap=moved(by_min), on_hold=hold)
+
+    turn = Put(keep(replace(timer, on=not timer.on)), off if timer.on else ready)
     time = Label(key=f"{key}.time", text=timer.shown, description=say("Time"), style=Type.HEADLINE, align="centre")
-    return line(
+    steps = line(
         (72, step("earlier", say("Half an hour earlier"), Icon.MINUS, -30)),
         time,
         (72, step("later", say("Half an hour later"), Icon.PLUS, 30)),
     )
+    return Tile(key=key, text=text, icon=icon, checked=timer.on, on_tap=turn), steps
 
 
 def search(key: str, name: str, hint: str, state: State, on_enter: Message | None) -> Field:
@@ -323,7 +330,6 @@ def rows(
     Args:
         key: its own, under which the state remembers how far it is scrolled.
         name: what it lists.
-        state: of the cockpit.
         entries: what is listed.
         entry: makes the row of an entry, from its index.
         columns: entries side by side.

@@ -97,11 +97,7 @@ def _halo(picture: Image.Image, x: float, y: float, radius: float, colour: Colou
 
 
 def _body(
-    brush: ImageDraw.ImageDraw,
-    place: Callable[[Outline], Outline],
-    pen: int,
-    opaque: tuple[int, int],
-    night: bool,
+    brush: ImageDraw.ImageDraw, place: Callable[[Outline], Outline], pen: int, opaque: tuple[int, int], night: bool
 ) -> None:
     paint: Colour = (84, 99, 121) if night else (176, 188, 203)
     light: Colour = (104, 121, 146) if night else (198, 208, 220)

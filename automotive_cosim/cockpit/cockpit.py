@@ -48,15 +48,7 @@ from automotive_cosim.cockpit.registry import apps, by_any_name, docked, pages
 from automotive_cosim.cockpit.restrictions import REASONS, Restriction
 from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.sensing import sense
-from automotive_cosim.cockpit.signals import (
-    HMI,
-    LIGHTS,
-    LINK,
-    LeafKind,
-    Signal,
-    Signals,
-    named,
-)
+from automotive_cosim.cockpit.signals import HMI, LIGHTS, LINK, LeafKind, Signal, Signals, named
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import CommandRecord, Message, State
 from automotive_cosim.cockpit.vehicle import Vehicle

@@ -423,14 +423,7 @@ class CALL:
     """The caller; empty without one."""
     PARTNER = _text("Cabin.Infotainment.Call.Partner")
     """The other party of the present call."""
-    PHONE = _enter(
-        Signal(
-            "Vehicle.Driver.Phone",
-            LeafKind.SENSOR,
-            "AWAY",
-            allowed=("AWAY", "CRADLE", "HAND"),
-        )
-    )
+    PHONE = _enter(Signal("Vehicle.Driver.Phone", LeafKind.SENSOR, "AWAY", allowed=("AWAY", "CRADLE", "HAND")))
     """Where the phone that the driver uses is, as the interior camera sees it."""
     UNREAD = _measure("Cabin.Infotainment.Message.Unread", 0.0, "", 0, None)
     """Number of senders with unread messages."""

@@ -6,7 +6,7 @@
 | ``1920x720`` | as large as on 1280x720 | the companion, on the right |
 | ``1080x1920`` | its panes one above the other | the companion, above it |
 
-The companion is the map with what plays now (``companion``). Screens with a large map of their own take its
+The companion is the map with what plays now (``picture``). Screens with a large map of their own take its
 room as well. Status bar and dock have one line each, in portrait two.
 """
 

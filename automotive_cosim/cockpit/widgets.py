@@ -283,8 +283,6 @@ class Bar(Widget):
     share: float
     tone: Tone = "accent"
 
-    class_name: ClassVar[str] = "View"
-
 
 @frozen(frozen=True, slots=True, kw_only=True)
 class LimitSign(Widget):
@@ -367,8 +365,6 @@ class MapView(Widget):
     on_double_tap: Message | None = None
     pans: bool = False
     """Whether a swipe moves it."""
-
-    class_name: ClassVar[str] = "View"
 
 
 @frozen(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.map.screens import destination
 from automotive_cosim.cockpit.apps.map.way import nearest
-from automotive_cosim.cockpit.cards import content, heading, rows, slider, switch, time_setter, title
+from automotive_cosim.cockpit.cards import content, heading, rows, schedule, slider, switch, title
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.flow import card, fill, line, panels, stack
 from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, offered
@@ -18,7 +18,7 @@ from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.timer import AT_SEVEN, Timer
 from automotive_cosim.cockpit.values import distance
-from automotive_cosim.cockpit.widgets import Bar, Label, Tile, Widget
+from automotive_cosim.cockpit.widgets import Bar, Label, Widget
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import say
 
@@ -47,21 +47,15 @@ def charging(state: State) -> tuple[Widget, ...]:
         style=Type.LABEL,
         align="right",
     )
-    at_once = say("Charging starts immediately")
-    ready = Tile(
-        key="charging.schedule",
-        text=say("Ready at a set time"),
-        icon=Icon.CLOCK,
-        checked=timer.on,
-        on_tap=Put(
-            ChargingSchedule(replace(timer, on=not timer.on)),
-            at_once if timer.on else say("Charged by {shown}", shown=timer.shown),
-        ),
+    ready, time = schedule(
+        "charging.schedule",
+        say("Ready at a set time"),
+        Icon.CLOCK,
+        timer,
+        ChargingSchedule,
+        say("Charged by {shown}", shown=timer.shown),
+        say("Charging starts immediately"),
     )
-
-    def put(moved: Timer) -> Put:
-        return Put(ChargingSchedule(moved), say("The time is {time}", time=moved.shown))
-
     battery = card(
         title(Icon.CHARGING, say("Charging")),
         8,
@@ -75,7 +69,7 @@ def charging(state: State) -> tuple[Widget, ...]:
         12,
         ready,
         16,
-        (72, time_setter("charging.schedule", timer, put)),
+        (72, time),
         padding=(28, 20),
     )
     stations = rows(

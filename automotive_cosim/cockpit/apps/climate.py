@@ -15,10 +15,10 @@ from automotive_cosim.cockpit.cards import (
     fact,
     heading,
     levels,
+    schedule,
     slider,
     stepper,
     switch,
-    time_setter,
     title,
 )
 from automotive_cosim.cockpit.commands import Put, Set
@@ -235,27 +235,23 @@ def _rear(state: State) -> Block:
 
 def _schedule(state: State) -> Block:
     timer = state.of(ClimateSchedule).timer
-    ready = say("The cabin will be ready at {time}", time=timer.shown)
-    prepare = Tile(
-        key="climate.schedule",
-        text=say("Precondition the cabin"),
-        icon=Icon.CLIMATE,
-        checked=timer.on,
-        on_tap=Put(
-            ClimateSchedule(replace(timer, on=not timer.on)), say("The schedule is off") if timer.on else ready
-        ),
+    prepare, time = schedule(
+        "climate.schedule",
+        say("Precondition the cabin"),
+        Icon.CLIMATE,
+        timer,
+        ClimateSchedule,
+        say("The cabin will be ready at {time}", time=timer.shown),
+        say("The schedule is off"),
     )
     words = say("The climate control starts half an hour before, and the cabin is ready at this time.")
-
-    def put(moved: Timer) -> Put:
-        return Put(ClimateSchedule(moved), say("The time is {time}", time=moved.shown))
 
     return card(
         title(Icon.CLOCK, say("Schedule")),
         20,
         (68, prepare),
         28,
-        (72, time_setter("climate.schedule", timer, put)),
+        (72, time),
         24,
         (64, about("climate.schedule.about", words, 3)),
     )

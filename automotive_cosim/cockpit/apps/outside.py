@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.climate import glass_words
 from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
-from automotive_cosim.cockpit.apps.vehicle.commands import WASH
+from automotive_cosim.cockpit.apps.vehicle.state import WASH
 from automotive_cosim.cockpit.cards import content, heading
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.controls import CONTROLS

@@ -5,8 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated
 
-from automotive_cosim.cockpit.apps.settings.commands import SwitchProfile
-from automotive_cosim.cockpit.apps.settings.state import NETWORKS, PHONES, PROFILES, TABLET, Connections
+from automotive_cosim.cockpit.apps.settings.state import (
+    NETWORKS,
+    PHONES,
+    PROFILES,
+    TABLET,
+    Connections,
+    SwitchProfile,
+)
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.functions import CallMade, disabled, locked, offered
 from automotive_cosim.cockpit.restrictions import Restriction

@@ -5,8 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.settings.commands import SwitchProfile
-from automotive_cosim.cockpit.apps.settings.state import NETWORKS, PHONES, TABLET, Connections, Profiles
+from automotive_cosim.cockpit.apps.settings.state import (
+    NETWORKS,
+    PHONES,
+    TABLET,
+    Connections,
+    Profiles,
+    SwitchProfile,
+)
 from automotive_cosim.cockpit.cards import (
     about,
     choice,

@@ -1,13 +1,15 @@
-"""Networks and devices that the car is linked to, and the drivers' profiles."""
+"""Networks and devices that the car is linked to, and the drivers' profiles, one of which is chosen."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, CarMemory
+from automotive_cosim.cockpit.commands import set_all
 from automotive_cosim.cockpit.signals import HMI, HVAC, LINK, Signal
-from automotive_cosim.cockpit.state import AppData, State
+from automotive_cosim.cockpit.state import AppData, Command, State
+from automotive_cosim.contracts import Feedback, FeedbackCode
 from automotive_cosim.contracts.text import say
 
 PROFILES = (say("Driver 1"), say("Driver 2"), say("Guest"))
@@ -72,3 +74,23 @@ def _profile(name: str, seat: tuple[float, ...]) -> UserProfile:
             (HMI.BRIGHTNESS, 80.0 if name == "Driver 2" else 70.0),
         ),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class SwitchProfile(Command):
+    """Switch to a driver's profile."""
+
+    profile: str
+
+    def aims(self, state: State) -> frozenset[str]:
+        return frozenset({"driver.profile"})
+
+    def perform(self, state: State) -> Feedback:
+        """The profile's seat, mirrors, temperature and brightness."""
+        name, profiles = self.profile, state.of(Profiles)
+        values = next(profile.values for profile in profiles.known if profile.name == name)
+        feedback = set_all(state, values, say("{name} is now the driver", name=name))
+        if feedback.code is FeedbackCode.REFUSED:
+            return feedback
+        state.keep(replace(profiles, driver=name))
+        return Feedback(FeedbackCode.OK, say("{name} is now the driver", name=name))

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.apps.vehicle.commands import HONK
 from automotive_cosim.cockpit.apps.vehicle.screens import page
-from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, CarMemory
+from automotive_cosim.cockpit.apps.vehicle.state import HONK, REMEMBERED, CarMemory
 from automotive_cosim.cockpit.camera import scene
 from automotive_cosim.cockpit.cards import SMALL, choice, choices, fact, heading, levels, slider, stepper, switch
 from automotive_cosim.cockpit.commands import Put, SetAll

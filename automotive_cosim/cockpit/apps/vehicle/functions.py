@@ -6,8 +6,7 @@ from typing import Annotated
 
 from annotated_types import Ge, Le
 
-from automotive_cosim.cockpit.apps.vehicle.commands import HONK, WASH
-from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, SLOTS, CarMemory
+from automotive_cosim.cockpit.apps.vehicle.state import HONK, REMEMBERED, SLOTS, WASH, CarMemory
 from automotive_cosim.cockpit.commands import Put, SetAll
 from automotive_cosim.cockpit.functions import CallMade, disabled, offered
 from automotive_cosim.cockpit.signals import SEAT

@@ -1,4 +1,4 @@
-"""What the driver did at the car, and the seat positions that it remembers."""
+"""What the driver did at the car, by horn and washer, and the seat positions that it remembers."""
 
 from __future__ import annotations
 
@@ -8,8 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from automotive_cosim.cockpit.signals import MIRROR, SEAT, Signal, Signals
-from automotive_cosim.cockpit.state import AppData
+from automotive_cosim.cockpit.commands import SimpleCommand
+from automotive_cosim.cockpit.signals import BODY, DRIVE, MIRROR, SEAT, Signal, Signals
+from automotive_cosim.cockpit.state import AppData, State
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts import Feedback, FeedbackCode
+from automotive_cosim.contracts.text import say
 
 SLOTS = 3
 """Number of seat memories."""
@@ -61,3 +65,31 @@ def _seat(rng: np.random.Generator) -> tuple[float, ...]:
         return low + int(rng.integers(round((high - low) / signal.step) + 1)) * signal.step
 
     return tuple(drawn(signal) for signal in REMEMBERED)
+
+
+WASH_PCT = 2.0
+"""Share of the washer's tank used per wash."""
+
+
+def _honk(state: State) -> Feedback:
+    """Sound the horn."""
+    car = state.of(CarMemory)
+    state.keep(replace(car, horns=car.horns + 1))
+    state.signals[DRIVE.HORN] = True
+    return Feedback(FeedbackCode.OK, say("the horn sounds"))
+
+
+HONK = SimpleCommand(_honk, ("horn",))
+
+
+def _wash(state: State) -> Feedback:
+    """Wash the windshield."""
+    left, car = state.signals[BODY.WASHER_FLUID], state.of(CarMemory)
+    if left < WASH_PCT:
+        return state.refused(say("The washer's tank is empty"))
+    state.signals[BODY.WASHER_FLUID] = left - WASH_PCT
+    state.keep(replace(car, washes=car.washes + 1))
+    return state.said(say("The windshield is washed"), Icon.WASHER)
+
+
+WASH = SimpleCommand(_wash, ("washer",))
