@@ -1,18 +1,22 @@
-"""``automotive-cosim report`` and ``replay``: commands on a folder of results."""
+"""``automotive-cosim report``, ``replay`` and ``attribute``: commands on a folder of results."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, print_json, reads_results
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UserError, install_hint
 from automotive_cosim.report.settings import PlaybackSettings
+
+if TYPE_CHECKING:
+    from automotive_cosim.run.attribution import ActEffect
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 
@@ -57,16 +61,56 @@ def _safety(folder: Path, agent: str) -> None:
     typer.echo(f"{pdf} written" if pdf else f"no PDF: {install_hint('reports')}")
 
 
+TrialFolder = Annotated[
+    Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)
+]
+TrialId = Annotated[
+    str,
+    typer.Argument(
+        help="In a folder of `eval`: id of the episode or drive, or the beginning of it.", show_default=False
+    ),
+]
+
+
+@reads_results
+def attribute(folder: TrialFolder, episode: TrialId = "", as_json: AsJson = False) -> None:
+    """Measure what each act of a stored trial changed, by leaving it out, and add that to its page.
+
+    Acts that change nothing alone are also left out in pairs.
+    """
+    from automotive_cosim.formats.layout import PAGE
+    from automotive_cosim.report.page import write_page
+    from automotive_cosim.run.attribution import attribute as measured
+
+    effects = measured(folder, episode)
+    if (folder / PAGE).is_file():
+        write_page(folder)
+    _tell_effects(effects, as_json=as_json)
+
+
+def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
+    if as_json:
+        print_json({"acts": [asdict(each) | {"effect": each.effect} for each in effects]})
+        return
+    for each in effects:
+        step = f"step {' and '.join(map(str, each.steps))}, " if each.steps else ""
+        typer.echo(f"{step}{clock(each.at_s)}  {each.act}")
+        if each.came:
+            typer.echo(f"    driver: {each.came}")
+        typer.echo(f"    effect: {each.effect}")
+    if not effects:
+        typer.echo("the agent commanded nothing: what happened is the do-nothing run")
+
+
 @reads_results
 @takes(PlaybackSettings)
 def replay(
-    folder: Annotated[Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)],
-    episode: Annotated[
-        str,
-        typer.Argument(
-            help="In a folder of `eval`: id of the episode or drive, or the beginning of it.", show_default=False
-        ),
-    ] = "",
+    folder: TrialFolder,
+    episode: TrialId = "",
+    without: Annotated[
+        list[int] | None,
+        typer.Option(help="Leave out what this step commanded, and say what that changes; may be repeated."),
+    ] = None,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
@@ -81,6 +125,11 @@ def replay(
         if episode or as_json:
             raise UserError("--play and --film show the record of one `run`; omit the episode and --json")
         _show_record(folder, shown.film, shown.speed)
+        return
+    if without:
+        from automotive_cosim.run.attribution import attribute as measured
+
+        _tell_effects(measured(folder, episode, without), as_json=as_json)
         return
     compared = rerun(folder, episode)
     different = [step for step in compared if step.differs]

@@ -83,7 +83,15 @@ class Reroute:
     """The whole route from the current edge; empty lets the router choose."""
 
 
-RoadRequest = Alert | SlowDown | Cruise | Hazards | PullOver | Reroute
+@dataclass(frozen=True, slots=True)
+class Redraw:
+    """An experimenter's, no cockpit's: the driver draws as for a request that is not made, so that later answers
+    stay what they were; or, with a seed, traffic and driver have other random numbers from here on."""
+
+    seed: int | None = None
+
+
+RoadRequest = Alert | SlowDown | Cruise | Hazards | PullOver | Reroute | Redraw
 
 
 @dataclass(frozen=True, slots=True)

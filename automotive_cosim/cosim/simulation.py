@@ -16,6 +16,7 @@ import numpy.typing as npt
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import GLASS, LIGHTS, MOTION
+from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, Element, Feedback, RoadSnapshot
 from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.cosim.car import Car
@@ -57,6 +58,12 @@ class CoSimulation:
         for request in self.cockpit.drain_requests():
             self.cockpit.answered(request, self.traffic.request(request))
         return self.cockpit.spoken(feedback)
+
+    def give(self, record: CommandRecord) -> None:
+        """Gives a recorded command once more, whatever is on the screen; the road answers anew."""
+        self.cockpit.give(record)
+        for request in self.cockpit.drain_requests():
+            self.cockpit.answered(request, self.traffic.request(request))
 
     def advance(self, duration_s: float) -> tuple[Moment, ...]:
         """Lets time pass, in ticks; less than requested if the ego's drive ends.

@@ -86,7 +86,7 @@ def outcome_of(state: TaskState) -> Json:
 
 async def _finish(state: TaskState, service: EpisodeService, episode_id: str) -> None:
     outcome = await _threaded(lambda: service.finish(episode_id))
-    state.store.set(OUTCOME, outcome.as_json())
+    state.store.set(OUTCOME, outcome)
 
 
 async def _threaded(call: Callable[[], Any]) -> Any:

@@ -254,7 +254,7 @@ class CockpitTools:
     @_told
     def finish(self, episode_id: EpisodeId) -> CallToolResult:
         """End the episode and get its verdict. One without a declared status is judged as it is."""
-        return _result(self._service.finish(episode_id).as_json())
+        return _result(self._service.finish(episode_id))
 
 
 class _Progress(Observer):

@@ -22,6 +22,7 @@ from automotive_cosim.measures.exposure import summed
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.drivechart import timeline_chart
+from automotive_cosim.report.findings import act_effects
 from automotive_cosim.report.policy import house_rules
 from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, LEAST_CLUSTERS, Interval
@@ -249,6 +250,9 @@ def tables(rows: Sequence[DriveTrialRow], folder: Path) -> list[Table]:
             _watchers(groups),
             _faults(groups),
             _acts(groups, folder),
+            act_effects(
+                folder, {row.id: f"{contestant(row).label}, {row.family}, seed {row.seed}" for row in rows}
+            ),
             _kinds(groups),
             _families(groups),
             _effects(groups),

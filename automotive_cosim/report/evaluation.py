@@ -83,6 +83,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.failures(shared, found),
         findings.meanings(found),
         findings.harm(shared),
+        findings.act_effects(results.folder, {row.id: row.id for row in results.rows}),
         findings.place_effect(shared),
         *findings.by_condition(shared),
         findings.by_difficulty(shared),

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from automotive_cosim.agents import NOT_RANKED
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.episode.conditions import TABLE, Condition
 from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.report.results import Contestant, Results, pair_instance, pairs
 from automotive_cosim.report.stats import bracketed, clustered_mean, compare
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
+from automotive_cosim.run.attribution import path_of, read_effects
 from automotive_cosim.run.difficulty import WonBy, level, measured
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.harm import DriveFigures
+from automotive_cosim.run.figures import DriveFigures
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.tasking.task import Module
 
@@ -65,6 +67,27 @@ def meanings(found: Mapping[str, FailureClass]) -> Table:
     return Table(
         "failure_meanings", "What the classes of failures are", ("Class", "What happened"), rows, note, heads=2
     )
+
+
+def act_effects(folder: Path, trials: Mapping[str, str]) -> Table:
+    """What each act of the trials changed of which that was measured.
+
+    Args:
+        folder: the evaluation's.
+        trials: their ids, with their names.
+    """
+    lines = tuple(
+        (name, " and ".join(map(str, each.steps)), clock(each.at_s), each.act, each.effect, str(each.draws))
+        for trial, name in trials.items()
+        for each in read_effects(path_of(folder, trial))
+    )
+    columns = ("Trial", "Step", "When", "Act", "Effect", "Draws")
+    note = (
+        "Measured by `automotive-cosim attribute`: each act was left out of a fork of the same traffic, the later "
+        "ones given as recorded; two together where neither changed anything alone. Differences are with the act "
+        "minus without it; what other random numbers change as much is no effect."
+    )
+    return Table("act_effects", "Which act did it", columns, lines, note, heads=4)
 
 
 def harm(results: Results) -> Table:

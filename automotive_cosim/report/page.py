@@ -18,6 +18,7 @@ from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.report.playback import open_picture
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
+from automotive_cosim.run.attribution import path_of, read_effects
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import from_json
@@ -57,6 +58,7 @@ def write_page(folder: Path) -> Path:
         parts=PARTS,
         plots={"wide": Plot(*drive, 960, 300), "narrow": Plot(*drive, 420, 280)},
         steps=_steps(folder),
+        effects=read_effects(path_of(folder)),
         film=embedded(read_bytes(film)) if film.is_file() else None,
         versions=sorted(manifest["versions"].items()),
     )

@@ -31,9 +31,9 @@ from automotive_cosim.interface.trace import plain
 from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
+from automotive_cosim.run.trial import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task

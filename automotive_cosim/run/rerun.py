@@ -8,7 +8,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
-from typing import cast
+from typing import TypeAlias, cast
 
 from automotive_cosim.agents import PROFILES, AgentSettings, NativeAgent, make_agent
 from automotive_cosim.agents.a2a import CHANNELS, is_remote
@@ -34,13 +34,13 @@ from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup, read_setup
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import TrialSetup
+from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.run.store import read_evaluation, read_trace
-from automotive_cosim.run.trial import run_trial
+from automotive_cosim.run.trial import TrialSetup, run_trial
 from automotive_cosim.run.trial_folder import is_trial, read_steps, read_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import agent_of
@@ -64,8 +64,23 @@ class Compared:
     step."""
 
 
+Recorded: TypeAlias = tuple[TrialSetup, Sequence[Json], frozenset[Channel], str | None]
+"""A stored trial: what was run, the steps of its trace, its agent's channels, and how the agent's side failed."""
+
+
 def rerun(folder: Path, trial: str = "") -> list[Compared]:
-    """Plays the actions of a stored trial in the same setup and compares step by step.
+    """Plays the actions of a stored trial in the same setup and compares step by step; arguments and errors are
+    those of ``recorded``.
+
+    Raises:
+        InfrastructureError: the simulation failed.
+    """
+    job, stored, channels, failure = recorded(folder, trial)
+    return compare(stored, [line for line in played(job, stored, channels, failure)[1].lines if "step" in line])
+
+
+def recorded(folder: Path, trial: str = "") -> Recorded:
+    """A stored trial.
 
     Args:
         folder: an evaluation's, or that of a single trial.
@@ -73,7 +88,6 @@ def rerun(folder: Path, trial: str = "") -> list[Compared]:
 
     Raises:
         UserError: no such trial, several of them, or its trace cannot be read.
-        InfrastructureError: the simulation failed.
     """
     if is_trial(folder):
         return _single(folder, trial)
@@ -92,10 +106,10 @@ def rerun(folder: Path, trial: str = "") -> list[Compared]:
         raise UserError(f"{name} ended in an error and has no trace: {row.error}")
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
     if isinstance(row, DriveTrialRow):
-        return _again(job, stored, frozenset(row.channels), row.agent_error)
+        return job, stored, frozenset(row.channels), row.agent_error
     with closing(ForkServer()) as fork_server, agent_of(job, fork_server) as agent:
         channels = frozenset(agent.channels)
-    return _again(job, stored, channels, row.agent_error)
+    return job, stored, channels, row.agent_error
 
 
 def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
@@ -118,14 +132,14 @@ def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
     return matching[0]
 
 
-def _single(folder: Path, trial: str) -> list[Compared]:
+def _single(folder: Path, trial: str) -> Recorded:
     """The same for the folder of a trial."""
     if trial:
         raise UserError(f"{folder} holds a single trial; omit {trial!r}")
     told, stored = read_trial(folder), read_steps(folder)
     job, row = _job(folder, told), (told.get("result") or {}) | (told.get("row") or {})
     channels = frozenset(map(Channel, row["channels"])) if "channels" in row else _channels(job)
-    return _again(job, stored, channels, row.get("agent_error"))
+    return job, stored, channels, row.get("agent_error")
 
 
 def _job(folder: Path, told: Json) -> TrialSetup:
@@ -140,12 +154,6 @@ def _job(folder: Path, told: Json) -> TrialSetup:
     if (folder / TRIAL).is_file() or setup.scenario != family_named(setup.family).scenario:
         return setup
     return replace(setup, scenario="")  # earlier records named a family's own scenario too
-
-
-def _again(
-    job: TrialSetup, stored: Sequence[Json], channels: frozenset[Channel], failure: str | None
-) -> list[Compared]:
-    return compare(stored, [line for line in played(job, stored, channels, failure)[1].lines if "step" in line])
 
 
 def _channels(setup: TrialSetup) -> frozenset[Channel]:
@@ -170,6 +178,8 @@ def played(
     failure: str | None = None,
     *,
     simulations: Simulations | None = None,
+    observers: Sequence[TrialObserver] = (),
+    player: Player | None = None,
 ) -> tuple[TrialRow, Recorder]:
     """Plays the actions of a stored trial in the same setup; its row, and what an evaluation would keep of it.
 
@@ -179,13 +189,16 @@ def played(
         channels: those of its agent, on which the answers to queries depend.
         failure: how the agent's side failed after them, if it did.
         simulations: warm simulations to use; by default its own.
+        observers: notified of everything as it happens.
+        player: used instead of a player of these steps.
 
     Raises:
         UserError: something in the setup does not exist.
         InfrastructureError: the simulation failed.
     """
     recorder = Recorder(job, None)
-    row = run_trial(job, Player(stored[1:], channels, failure), (recorder,), simulations=simulations)
+    player = player or Player(stored[1:], channels, failure)
+    row = run_trial(job, player, (recorder, *observers), simulations=simulations)
     if row.error is not None:
         raise InfrastructureError(row.error)
     return row, recorder

@@ -17,6 +17,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED
 from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.report.page import PARTS
+from automotive_cosim.run.attribution import ActEffect, path_of, read_effects
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -84,7 +85,8 @@ class Content:
             **head,
         }
         if head["kind"] == "drive":
-            return shared | _drive(row, result.get("timeline") or {})
+            effects = read_effects(path_of(folder) if episode is None else path_of(entry.folder, episode))
+            return shared | _drive(row, result.get("timeline") or {}, effects)
         return shared | {
             "parts": dict(PARTS),
             "verdict": result.get("verdict"),
@@ -289,7 +291,7 @@ class Content:
         ]
 
 
-def _drive(row: Json, timeline: Json) -> Json:
+def _drive(row: Json, timeline: Json, effects: Sequence[ActEffect]) -> Json:
     """What a page shows of a drive alone: its events and acts once it is over."""
     judged = from_json(DriveTrialRow, row) if row else None
     events, acts = (judged.events, judged.acts) if judged else ((), ())
@@ -300,7 +302,7 @@ def _drive(row: Json, timeline: Json) -> Json:
         "verdict": None,
         "spans": [_span(event, acts) for event in events],
         "acts": [{"at_s": act.time_s, "text": act.words, "worth": act.worth} for act in acts],
-        "timeline": _drive_timeline(events, acts, told(acts, events, timeline)),
+        "timeline": _drive_timeline(events, acts, told(acts, events, timeline), effects),
         "met": sum(event.outcome.is_credited for event in events),
         "path": (),
         "violations": (),
@@ -338,8 +340,11 @@ def _became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
     return "; ".join((OUTCOMES.get(event.outcome, event.outcome), *times(event, acts)))
 
 
-def _drive_timeline(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct], came: Sequence[str]) -> list[Json]:
-    """Every instant that the page lists, in order; ``came`` is what became of each act."""
+def _drive_timeline(
+    events: Sequence[JudgedEvent], acts: Sequence[JudgedAct], came: Sequence[str], effects: Sequence[ActEffect]
+) -> list[Json]:
+    """Every instant that the page lists, in order; ``came`` is what became of each act, ``effects`` what each
+    changed, where that was measured."""
     lines = []
     is_explained = False
     for event in sorted(events, key=lambda each: each.observable_s):
@@ -356,6 +361,7 @@ def _drive_timeline(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct], ca
         (act.time_s, "alert", f"{act.words.replace('_', ' ')} ({became})")
         for act, became in zip(acts, came, strict=True)
     ]
+    lines += [(each.at_s, "alert", f"effect of {each.act}: {each.effect}") for each in effects]
     return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(lines)]
 
 

@@ -25,6 +25,7 @@ from automotive_cosim.contracts import (
     EgoEnd,
     Hazards,
     PullOver,
+    Redraw,
     Reroute,
     RoadHere,
     RoadRequest,
@@ -246,6 +247,13 @@ class Driver:
                 return self._hear(request, state, say("the driver is asked to pull over"))
             case Cruise(speed_kmh):
                 return self._cruise(speed_kmh, state)
+            case Redraw(int(seed)):
+                self._draws = np.random.default_rng([self.plan.seed, 0, seed])
+                self.pedals.renew(seed)
+                return Answer(True, "")
+            case Redraw():
+                self._drawn()
+                return Answer(True, "")
             case Hazards(on):
                 self.hazard_lights = on
                 self.pedals.set_hazards(on)
@@ -288,10 +296,14 @@ class Driver:
 
     def _hear(self, request: Alert | SlowDown | PullOver, state: DrivingState, reason: str) -> Answer:
         """Draws once per request of any kind, so that the driver's randomness depends only on their number."""
-        reaction_s = self._profile.reaction_s * math.exp(REACTION_SPREAD * float(self._draws.standard_normal()))
-        complies = float(self._draws.random()) < self._profile.compliance
+        reaction_s, complies = self._drawn()
         self._intents.append(_Intent(state.time_s + reaction_s, state.time_s, request, complies))
         return Answer(True, reason)
+
+    def _drawn(self) -> tuple[float, bool]:
+        """A reaction time, and whether the driver complies."""
+        reaction_s = self._profile.reaction_s * math.exp(REACTION_SPREAD * float(self._draws.standard_normal()))
+        return reaction_s, float(self._draws.random()) < self._profile.compliance
 
     def _cruise(self, speed_kmh: float | None, state: DrivingState) -> Answer:
         if speed_kmh is None:

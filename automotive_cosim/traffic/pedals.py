@@ -83,6 +83,10 @@ class Pedals(Protocol):
         """Drives at the edge of its lane to open a corridor, or in the middle again; returns where."""
         ...
 
+    def renew(self, seed: int) -> None:
+        """Gives the traffic other random numbers from here on (``traffic.chance``)."""
+        ...
+
     def reroute(self, request: Reroute, state: DrivingState) -> str:
         """Takes another route; returns a description of it.
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, lon_lat
 from automotive_cosim.contracts.text import Quantity, say
+from automotive_cosim.traffic.chance import renew
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.pedals import RefusedError
@@ -78,6 +79,9 @@ class SumoPedals:
         self._top_mps = self._set_mps = FASTEST_MPS
         # The first change gives the ego a type of its own and redraws its speed factor, so it comes before ours.
         sumo.set_max_speed(ego_id, FASTEST_MPS)
+
+    def renew(self, seed: int) -> None:
+        renew(self._sumo, seed)
 
     def set_speed_factor(self, factor: float) -> None:
         self._factor = factor

@@ -103,7 +103,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, State]):
         self._state.step_count = turn.step
         if turn.end is None:
             return _observation(turn)
-        outcome = self._service.finish(self._under_way).as_json()
+        outcome = self._service.finish(self._under_way)
         self._under_way = None
         return _observation(turn, outcome)
 

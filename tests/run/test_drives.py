@@ -397,8 +397,8 @@ def test_intervals_come_from_whole_drives(folder: Path) -> None:
     assert bounds.low < value(mixed) < bounds.high
     repeated = [replace(row, repeat=number) for number, row in enumerate([perfect, silent] * LEAST_CLUSTERS)]
     assert interval(repeated, value) is None  # type: ignore[arg-type]
-    names = ["watchers", "faults", "kinds", "families", "effects", "measures", "exposure"]
-    assert [table.name for table in tables(mixed)] == names
+    names = ["watchers", "faults", "acts", "kinds", "families", "effects", "measures", "exposure"]
+    assert [table.name for table in tables(mixed, folder)] == names
     assert len(grouped(mixed)) == 2
 
 

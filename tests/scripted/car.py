@@ -162,6 +162,9 @@ class ScriptedCar:
         """Whether it has stopped where it was asked to."""
         return self._standing_s > 0 and self._along_m > self._stop_m - 1.0
 
+    def renew(self, seed: int) -> None:
+        """Does nothing: there is no other traffic."""
+
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
         """False: there are no other lanes."""
         return False

@@ -1,39 +1,24 @@
 """Fresh random numbers for a forked simulation: another future of the same instant.
 
-libsumo has no call for it, so all of SUMO's generators are seeded anew through symbols that the library exports:
-the global one, those of the lanes (speeds, lane changes), of the reading of demand (speeds of cars to come) and of
-equipment (who reroutes). The arrivals of flows by probability keep their own. ``fresh_of`` proves at the start,
-in copies that may die of it, that equal seeds give equal futures and others do not; where they do not, every other
-car aims at a slightly different speed instead.
+``fresh_of`` proves at the start, in copies that may die of it, that equal new seeds (``traffic.chance``) give equal
+futures and others do not; where they do not, every other car aims at a slightly different speed instead.
 """
 
 from __future__ import annotations
 
-import ctypes
-from collections.abc import Iterator
 from contextlib import closing
 from enum import StrEnum
 from weakref import WeakKeyDictionary
 from zlib import crc32
 
-import numpy as np
-
 from automotive_cosim.errors import SetupError, TrafficError
+from automotive_cosim.traffic.chance import Generators, jitter
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.running import Running
-from automotive_cosim.traffic.sumo import EGO, LibSumo
-
-JITTER = 0.001
-"""Standard deviation of the factor on every other car's speed where SUMO cannot be seeded anew."""
+from automotive_cosim.traffic.sumo import LibSumo
 
 PROOF_S = 30.0
 """Simulated time over which the copies of the proof are compared."""
-
-SEED_RANGE = 2**31 - 1
-_SEED = "_ZN10RandHelper8initRandEP7SumoRNGbi"
-_DRAW = "_ZN10RandHelper4randEP7SumoRNG"
-_LANES = "_ZN6MSLane6myRNGsE"
-_SINGLE = ("_ZN16SUMORouteHandler12myParsingRNGE", "_ZN8MSDevice14myEquipmentRNGE")
 
 
 class Fresh(StrEnum):
@@ -61,47 +46,6 @@ class Fresh(StrEnum):
 Trial = tuple[tuple[float, ...], int]
 
 _PROVEN: WeakKeyDictionary[Forked, Fresh] = WeakKeyDictionary()
-
-
-class Generators:
-    """SUMO's random number generators in this process."""
-
-    def __init__(self, sumo: LibSumo) -> None:
-        """Finds them.
-
-        Raises:
-            SetupError: the library does not export them as expected.
-        """
-        try:
-            library = ctypes.CDLL(sumo.library_file)
-            self._seed, self._draw = getattr(library, _SEED), getattr(library, _DRAW)
-            self._single = [_address(library, name) for name in _SINGLE]
-            lanes = (ctypes.c_size_t * 2).in_dll(library, _LANES)  # a std::vector: where it begins and ends
-        except (OSError, AttributeError, ValueError) as error:
-            raise SetupError(f"libsumo does not export its random number generators: {error}") from error
-        self._seed.argtypes, self._seed.restype = (ctypes.c_void_p, ctypes.c_bool, ctypes.c_int), None
-        self._draw.argtypes, self._draw.restype = (ctypes.c_void_p,), ctypes.c_double
-        begin, end = lanes
-        count = int(sumo.option("thread-rngs"))
-        if count < 1 or end <= begin or (end - begin) % count:
-            raise SetupError(f"libsumo does not have the {count} generators for lanes that it should have")
-        self._lanes = range(begin, end, (end - begin) // count)
-
-    def __iter__(self) -> Iterator[int | None]:
-        """Their addresses; None is the global one."""
-        yield None
-        yield from self._single
-        yield from self._lanes
-
-    def seed(self, seed: int) -> None:
-        """Seeds them all anew, each with a seed of its own."""
-        seeds = np.random.default_rng(seed).integers(SEED_RANGE, size=len(self._single) + len(self._lanes) + 1)
-        for generator, own in zip(self, seeds, strict=True):
-            self._seed(generator, False, int(own))
-
-    def draw(self) -> tuple[float, ...]:
-        """The next number of each, 0 to 1."""
-        return tuple(float(self._draw(generator)) for generator in self)
 
 
 def fresh_of(simulation: Forked) -> Fresh:
@@ -139,17 +83,10 @@ def renew(running: Running, fresh: Fresh, seed: int) -> None:
     if fresh is not Fresh.JITTER:
         Generators(sumo).seed(seed)
         return
-    rng = np.random.default_rng(seed)
-    for vehicle in sorted(set(sumo.vehicle_ids()) - {EGO}):
-        factor = sumo.vehicle.getSpeedFactor(vehicle) * (1 + JITTER * float(rng.normal()))
-        sumo.set_speed_factor(vehicle, factor)
+    jitter(sumo, seed)
 
 
 def fingerprint(sumo: LibSumo) -> int:
     """A number for where every vehicle is and how fast; equal for equal traffic."""
     traffic = [(each, sumo.position(each), sumo.speed(each)) for each in sorted(sumo.vehicle_ids())]
     return crc32(repr(traffic).encode())
-
-
-def _address(library: ctypes.CDLL, name: str) -> int:
-    return ctypes.addressof(ctypes.c_char.in_dll(library, name))

@@ -9,13 +9,14 @@ import numpy as np
 
 from automotive_cosim.formats.incidents import Closure
 from automotive_cosim.studies.calls.accounts import Settled
-from automotive_cosim.studies.calls.chance import SEED_RANGE, Fresh, fresh_of, renew
+from automotive_cosim.studies.calls.chance import Fresh, fresh_of, renew
 from automotive_cosim.studies.calls.divert import Edges, divert
 from automotive_cosim.studies.calls.ledger import own_choice, settle, stage
 from automotive_cosim.studies.reroute.compare import Future
 from automotive_cosim.studies.reroute.plan import AHEAD, StudyJob
 from automotive_cosim.studies.reroute.points import Diverted, Drawn, Shut, shows_signs
 from automotive_cosim.traffic.base import WarmUpProgress
+from automotive_cosim.traffic.chance import SEED_RANGE
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 

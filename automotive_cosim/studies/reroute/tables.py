@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Sequence
 
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.run.row import JobRow, remedy
-from automotive_cosim.studies.calls.chance import JITTER, Fresh
+from automotive_cosim.studies.calls.chance import Fresh
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.reroute.results import NOISE, Noise, Study
 from automotive_cosim.studies.reroute.rows import PolicyChoice
+from automotive_cosim.traffic.chance import JITTER
 
 NONE = "–"
 BINS = ((1.0, 1.25), (1.25, 1.5), (1.5, 2.0), (2.0, float("inf")))

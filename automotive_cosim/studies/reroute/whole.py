@@ -15,7 +15,7 @@ import numpy as np
 
 from automotive_cosim.contracts import DrivingState, Reroute
 from automotive_cosim.studies.calls.accounts import TrafficSummary
-from automotive_cosim.studies.calls.chance import SEED_RANGE, Fresh, renew
+from automotive_cosim.studies.calls.chance import Fresh, renew
 from automotive_cosim.studies.calls.ledger import others, settle
 from automotive_cosim.studies.reroute.compare import Future
 from automotive_cosim.studies.reroute.driver import decided, drive_on
@@ -24,6 +24,7 @@ from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import branched, exclusion
 from automotive_cosim.studies.reroute.policies import Policy, PolicyRule, parse_policy
 from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, WholeDrive
+from automotive_cosim.traffic.chance import SEED_RANGE
 from automotive_cosim.traffic.fork import RemoteTraffic
 
 SAME = Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)
