@@ -362,10 +362,14 @@ def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
     import_module("automotive_cosim.envs.pool")  # has simulations of its own, whichever test imports it first
 
 <<<<<<< HEAD
+<<<<<<< HEAD
     def unfilmed(film: Any, row: object, told: object) -> None:
 =======
     def unfilmed(film: Any, *_: object) -> None:
 >>>>>>> ready/traffic
+=======
+    def unfilmed(film: Any, *_: object) -> None:
+>>>>>>> ready/view
         if film._path.parent.is_dir():
             film._path.touch()
 

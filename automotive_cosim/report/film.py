@@ -27,7 +27,8 @@ SCALE = 0.75
 """Pixels per unit of the layout: the film has 960 x 540."""
 COCKPIT = Rect(20, 20, 848, 477)
 ROAD = Rect(884, 20, 376, 477)
-SIGN = Rect(ROAD.x + 12, ROAD.y + 12, ROAD.width - 24, 52)
+VIEW = ROAD.top(212)
+"""The view through the windshield; the road from above is below it then."""
 PLOT = Rect(20, 513, 848, 187)
 INFO = Rect(884, 513, 376, 187)
 
@@ -61,8 +62,12 @@ class Film(Frames):
         canvas = Canvas.plain(round(WIDTH * SCALE), round(HEIGHT * SCALE), SCALE, NIGHT.background)
         canvas.box(COCKPIT.inset(-3), NIGHT.pressed, 17)
         canvas.picture(COCKPIT, frame.cockpit, 14)
-        painter.draw(canvas, ROAD, past, (SIGN,))
-        draw_road_sign(canvas, SIGN, here)
+        road = ROAD if frame.view is None else ROAD.bottom_part(ROAD.height - VIEW.height - 12)
+        if frame.view is not None:
+            canvas.picture(VIEW, frame.view.resize(_pixels(VIEW), Image.Resampling.LANCZOS), 14)
+        sign = road.inset(12).top(52)
+        painter.draw(canvas, road, past, (sign,))
+        draw_road_sign(canvas, sign, here)
         canvas.picture(PLOT, speed_plot(path, len(past), *_pixels(PLOT), SCALE), 14)
         _info(canvas, frame, here)
         return canvas.image

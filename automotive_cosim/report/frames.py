@@ -45,6 +45,8 @@ class FilmFrame:
     title: str
     words: str
     milliseconds: int
+    view: Image.Image | None = None
+    """The view through the windshield; None before the hand-over."""
 
 
 class Frames(TrialObserver):
@@ -66,6 +68,7 @@ class Frames(TrialObserver):
         self._steps: list[FilmFrame] = []
         self._after: list[FilmFrame] = []
         self._hand_over_s = 0.0
+        self._session: Episode | None = None
         self._fitted: tuple[npt.NDArray[np.uint8], Image.Image] | None = None
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
@@ -80,6 +83,7 @@ class Frames(TrialObserver):
     def begun(self, session: Episode, shot: Shot) -> None:
         """The first frame of the episode, with the driver's words."""
         self.map = RoadMap(session.network)
+        self._session = session
         self._hand_over_s = shot.step.moment.time_s
         words = f"“{session.instance.goal}”"
         self._steps.append(self._frame(0.0, shot.screenshot, SAID, words, STEP_MS))
@@ -126,7 +130,8 @@ class Frames(TrialObserver):
         """A frame; a screen that has not changed is one array (``Cockpit.screenshot``) and is fitted once."""
         if self._fitted is None or self._fitted[0] is not screenshot:
             self._fitted = screenshot, self._fit(screenshot)
-        return FilmFrame(at_s, self._fitted[1], title, words, milliseconds)
+        view = None if self._session is None else Image.fromarray(self._session.world.view())
+        return FilmFrame(at_s, self._fitted[1], title, words, milliseconds, view)
 
     def _fit(self, screenshot: npt.NDArray[np.uint8]) -> Image.Image:
         """The picture of the screen as large as fits, whatever the screen's size."""

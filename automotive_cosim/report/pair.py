@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from PIL import Image
+from PIL import Image, ImageOps
 
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
@@ -42,16 +42,17 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import EMPTY, read_record
 from automotive_cosim.run.timeline import Sample
 
-WIDTH, HEIGHT = 1280, 968
+WIDTH, HEIGHT = 1280, 1192
 SCALE = 0.75
-"""Pixels per unit of the layout: the film has 960 x 726."""
+"""Pixels per unit of the layout: the film has 960 x 894."""
 MARGIN, GAP = 20, 24
 WORDS = Rect(MARGIN, 14, WIDTH - 2 * MARGIN, 52)
-SIDES = Rect(MARGIN, 76, WIDTH - 2 * MARGIN, 500).columns(2, GAP)
-HEAD, NOTES = 44, 108
-ROAD = Rect(MARGIN, 590, WIDTH - 2 * MARGIN, 180)
+SIDES = Rect(MARGIN, 76, WIDTH - 2 * MARGIN, 724).columns(2, GAP)
+HEAD, VIEW, NOTES = 44, 212, 108
+"""Heights of a side's title, of the view through the windshield, and of the words."""
+ROAD = Rect(MARGIN, 814, WIDTH - 2 * MARGIN, 180)
 SIGN = Rect(ROAD.x + 12, ROAD.y + 12, 320, 52)
-PLOT = Rect(MARGIN, 786, WIDTH - 2 * MARGIN, 166)
+PLOT = Rect(MARGIN, 1010, WIDTH - 2 * MARGIN, 166)
 COLOURS: tuple[Colour, Colour] = ((86, 180, 233), (230, 159, 0))
 """Okabe and Ito's sky blue and orange, which most people can distinguish."""
 BEFORE_S = 20.0
@@ -167,7 +168,7 @@ def _ends_at(path: Sequence[Sample]) -> str:
 
 
 def _screen(side: Rect) -> Rect:
-    return Rect(side.x, side.y + HEAD, side.width, side.height - HEAD - NOTES)
+    return Rect(side.x, side.y + HEAD + VIEW + 12, side.width, side.height - HEAD - VIEW - 12 - NOTES)
 
 
 def _compose(
@@ -210,6 +211,11 @@ def _draw_side(canvas: Canvas, box: Rect, side: PairSide, frame: FilmFrame, here
         head.right_part(160), amount_of_speed(here.speed_kmh, here.speed_unit), Type.STRONG, colour, "right"
     )
     canvas.picture(_screen(box), frame.cockpit, 14)
+    if frame.view is not None:
+        window = Rect(box.x, box.y + HEAD, box.width, VIEW)
+        left, top, right, bottom = window.edges(SCALE)
+        size = right - left, bottom - top
+        canvas.picture(window, ImageOps.fit(frame.view, size, Image.Resampling.LANCZOS, centering=(0.5, 0.55)), 14)
     notes = box.bottom_part(NOTES - 12)
     is_last = frame.title == outcome(side.row)
     good = bool(side.row.success)

@@ -160,7 +160,7 @@ class _Painter:
                 near = zip(right[begin:end].tolist(), ahead[begin:end].tolist(), strict=True)
                 shape = self._lens.shape([(x, y, 0.0) for x, y in near], FINE)
             if len(shape) > 2:
-                polygon(shape, colours[covers[at]])
+                polygon(shape, colours[int(covers[at])])
 
     def _surface(self) -> None:
         scene, wet = self._scene, self._outside.weather.precipitation > 0.1 and not self._outside.in_tunnel

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, ModelAgent, StageName, make_agent
+from automotive_cosim.agents.marks import png
 from automotive_cosim.agents.memory import Memory
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.episode.conditions import Conditions
@@ -272,6 +273,15 @@ def test_the_picture_alone_comes_without_list_and_index(agent, observation):
     assert "index" not in first.text
     assert "## The screen" not in first.text
     assert (len(first.pictures), len(back.pictures)) == (1, 2)
+
+
+def test_the_road_comes_as_the_last_picture(agent, observation):
+    made, model = agent(TAP, profile="m3a", sees=True, conditions=Conditions(see=See.CAMERA))
+    screen, road = np.zeros((720, 1280, 3), np.uint8), np.full((360, 640, 3), 90, np.uint8)
+    made.act(observation("Watch my speed", screenshot=screen, camera=road))
+    assert model.asked[0].pictures[-1] == png(road)
+    assert len(model.asked[0].pictures) == 3
+    assert "The last picture is the road" in model.asked[0].text
 
 
 @pytest.mark.parametrize(("profile", "sees"), [("t3a", True), ("m3a", False)])

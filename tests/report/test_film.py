@@ -35,7 +35,8 @@ def _film(
     cockpit = cast("Any", SimpleNamespace(screenshot=lambda: SCREEN))
     for time_s in moments_s:
         film.moved(cast("Any", SimpleNamespace(time_s=time_s)), cockpit)
-    episode = SimpleNamespace(network=NETWORK, instance=SimpleNamespace(goal=""))
+    world = SimpleNamespace(view=lambda: np.zeros((360, 640, 3), np.uint8))
+    episode = SimpleNamespace(network=NETWORK, instance=SimpleNamespace(goal=""), world=world)
     step = SimpleNamespace(moment=SimpleNamespace(time_s=100.0))
     film.begun(cast("Any", episode), cast("Any", SimpleNamespace(step=step, screenshot=SCREEN)))
     path = tuple(Sample(at_s, 50.0, 50.0, "", 0.0, 0.0, 0.0) for at_s in path_s)

@@ -186,14 +186,14 @@ def test_a_picture_has_nothing_beside_what_is_there(kind: str) -> None:
     assert (paint.picture(scene) == paint.picture(made((vehicle,)))).all()
 
 
-def _seen_in_traffic(family: str, simulations: Simulations) -> Iterator[tuple[Scene, SeenVehicle]]:
+def _seen_in_traffic(family: str, simulations: Simulations, looks: int) -> Iterator[tuple[Scene, SeenVehicle]]:
     """Vehicles of a real drive that nothing hides."""
     kept: list[Scene] = []
     session = DriveSpec(family, seed=1).begin(simulations, frozenset(), lean=True)
     try:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("automotive_cosim.cosim.simulation.picture", kept.append)
-            for _ in range(20):
+            for _ in range(looks):
                 session.world.advance(4.0)
                 session.world.view()
     finally:
@@ -211,9 +211,9 @@ def _seen_in_traffic(family: str, simulations: Simulations) -> Iterator[tuple[Sc
                 yield scene, vehicle
 
 
-def _check_traffic(family: str, simulations: Simulations) -> int:
+def _check_traffic(family: str, simulations: Simulations, looks: int) -> int:
     count, wrong = 0, []
-    for scene, vehicle in _seen_in_traffic(family, simulations):
+    for scene, vehicle in _seen_in_traffic(family, simulations, looks):
         count += 1
         own, told = nearest(scene, vehicle), read_back(scene, vehicle)
         if (
@@ -226,13 +226,13 @@ def _check_traffic(family: str, simulations: Simulations) -> int:
 
 
 def test_the_vehicles_of_a_real_drive_can_be_read_back(simulations: Simulations) -> None:
-    assert _check_traffic("grid_june", simulations) > 5
+    assert _check_traffic("grid_june", simulations, 20) > 5
 
 
 @pytest.mark.proof
 @pytest.mark.parametrize("family", ["london_november", "autobahn_july", "new_york_june", "gulf_july"])
 def test_and_those_of_other_places(simulations: Simulations, family: str) -> None:
-    assert _check_traffic(family, simulations) > 3
+    assert _check_traffic(family, simulations, 100) > 3
 
 
 # --- signs, signals and lamps -------------------------------------------------------------------------------
