@@ -129,20 +129,32 @@ class ActEffect:
         """In words."""
         told = [self.verdict] if self.verdict else []
         if self.points:
-            told.append(f"{self.points:+.0f} points")
+            told.append(f"{self.points:+.0f} points".replace("-", "−"))
         told += [_said(name, *found) for name, found in self.changed.items()]
         if not told:
             told.append("neutral")
         if self.chance:
             parts = ", ".join(_said(name, *found) for name, found in self.chance.items())
             told.append(f"no more than chance: {parts}")
+        if self.glance_s:
+            told.append(f"a glance of {_digits(self.glance_s)} s")
         return "; ".join(told)
 
 
 def _said(name: str, difference: float, noise: float) -> str:
     what, unit, _ = FIGURES[name]
-    beside = f" (draws differ by {noise:.3g})" if noise else ""
-    return f"{difference:+.3g} {unit} {what}{beside}".replace("-", "−")
+    beside = f" (draws differ by {_digits(noise)})" if noise >= 0.05 else ""
+    return f"{_digits(difference, '+')} {unit} {what}{beside}".replace("-", "−")
+
+
+def _words(act: DriveAct) -> str:
+    """An act with the speed that it asks for."""
+    slow = next((request for request in act.requests if isinstance(request, SlowDown)), None)
+    return act.words if slow is None else f"asks for {slow.speed_kmh:.0f} km/h"
+
+
+def _digits(value: float, sign: str = "") -> str:
+    return f"{value:{sign}.{0 if abs(value) >= 9.95 else 1}f}"
 
 
 def attribute(
@@ -224,7 +236,7 @@ class _Act:
     @property
     def words(self) -> str:
         """In words, for reports."""
-        return "; ".join(act.words for act in self.acts) or "commands nothing"
+        return "; ".join(map(_words, self.acts))
 
 
 @dataclass(slots=True)

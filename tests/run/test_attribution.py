@@ -90,7 +90,8 @@ def test_a_decisive_act_is_told_with_its_effect_and_a_neutral_one_as_such(
     assert difference > 5.0 > noise
     assert slow.came.startswith(("obeyed", "ignored"))
     assert says.is_neutral
-    assert says.effect == "neutral"
+    assert says.effect.startswith("neutral; a glance of ")
+    assert slow.act == "asks for 15 km/h"
     kept = (folder / FILE).read_text()
     assert attribute(folder, simulations=simulations) == [slow, says, *lacking]
     assert (folder / FILE).read_text() == kept, "the same seed gives the same effects"
@@ -115,5 +116,5 @@ def test_a_failure_for_want_of_an_act_is_told_as_that(folder: Path, simulations:
 def test_what_is_no_more_than_chance_is_no_effect() -> None:
     effect = ActEffect((3,), 1.0, "alert speed", chance={"over_s": (8.0, 11.0)}, draws=5)
     assert effect.is_neutral
-    assert effect.effect == "neutral; no more than chance: +8 s above the limit (draws differ by 11)"
+    assert effect.effect == "neutral; no more than chance: +8.0 s above the limit (draws differ by 11)"
     assert json.loads(json.dumps(effect.changed)) == {}
