@@ -219,7 +219,12 @@ def read_effects(path: Path) -> list[ActEffect]:
     """
     if not path.is_file():
         return []
-    return [from_json(ActEffect, each) for each in read_json(path)["acts"]]
+    try:
+        return [from_json(ActEffect, each) for each in read_json(path)["acts"]]
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        raise UserError(
+            f"{path} does not hold the effects of acts; `automotive-cosim attribute` measures them"
+        ) from error
 
 
 @dataclass(slots=True)

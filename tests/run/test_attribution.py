@@ -113,6 +113,14 @@ def test_a_failure_for_want_of_an_act_is_told_as_that(folder: Path, simulations:
     assert [each.effect.partition(":")[0] for each in lacking] == ["goal", "in time"]
 
 
+@pytest.mark.parametrize("content", ["", "[]", "{}", '{"acts": [1]}', '{"acts": [{"steps": "x"}]}'])
+def test_effects_that_cannot_be_read_are_refused_in_a_line(tmp_path: Path, content: str) -> None:
+    assert read_effects(tmp_path / FILE) == []
+    (tmp_path / FILE).write_text(content)
+    with pytest.raises(UserError, match="`automotive-cosim attribute` measures them"):
+        read_effects(tmp_path / FILE)
+
+
 def test_what_is_no_more_than_chance_is_no_effect() -> None:
     effect = ActEffect((3,), 1.0, "alert speed", chance={"over_s": (8.0, 11.0)}, draws=5)
     assert effect.is_neutral
