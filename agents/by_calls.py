@@ -19,7 +19,7 @@ from automotive_cosim.cockpit.state import Command
 from automotive_cosim.contracts import BY_HAND, Action, ActionType, Element, FeedbackCode, Observation
 from automotive_cosim.contracts.given import ALL, Channel, Interface, See
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.session import play
 from automotive_cosim.errors import ActionError, AgentError
 from automotive_cosim.interface.functions import action_of, call_of
 from automotive_cosim.interface.translation import actions_of

@@ -21,7 +21,7 @@ from dataclasses import replace
 from automotive_cosim.agents import prompt
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
-from automotive_cosim.agents.marks import png
+from automotive_cosim.agents.marks import png, road
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.agents.thoughts import spoken
 from automotive_cosim.agents.written import written
@@ -29,7 +29,7 @@ from automotive_cosim.contracts import UNCALLED, Action, Json, Observation
 from automotive_cosim.errors import ActionError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import Function, action_of, offered
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, ToolCall
 
 MOST_CALLS = 10
@@ -61,7 +61,7 @@ class Caller:
             chat_model: the model to ask, which knows the functions (``tools``) by its protocol.
             settings: the conditions, what to take away, the budget.
         """
-        wanted = AgentProfile(self.name, frozenset(Channel), frozenset(UNCALLED), reflects=False)
+        wanted = AgentProfile(self.name, ALL, frozenset(UNCALLED), reflects=False)
         self._profile = wanted.under(settings)
         self._asking = Asking(chat_model, settings)
         self._known = {function.name: function.parameters for function in tools(settings)}
@@ -116,7 +116,7 @@ class Caller:
     def _ask(self, seen: Observation) -> None:
         pictures: tuple[bytes, ...] = ()
         if seen.screenshot is not None and self._asking.chat_model.sees_pictures:
-            pictures = (png(seen.screenshot),)
+            pictures = (png(seen.screenshot), *road(seen))
         now = self._situation(seen, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, now)
         self._wish = replace(self._wish, text=self._wish.text if self._told else now, pictures=pictures)

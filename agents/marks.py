@@ -11,7 +11,7 @@ import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
 from automotive_cosim.cockpit.theme import Weight, font
-from automotive_cosim.contracts import BoundingBox, Element
+from automotive_cosim.contracts import BoundingBox, Element, Observation
 
 FRAME = (255, 64, 160)
 GROUND = (255, 255, 255)
@@ -133,6 +133,11 @@ def png(picture: npt.NDArray[np.uint8]) -> bytes:
     file = io.BytesIO()
     Image.fromarray(picture).save(file, "PNG")
     return file.getvalue()
+
+
+def road(seen: Observation) -> tuple[bytes, ...]:
+    """The view through the windshield as a PNG file, for who is given it."""
+    return () if seen.camera is None else (png(seen.camera),)
 
 
 def _font() -> ImageFont.FreeTypeFont:

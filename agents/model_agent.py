@@ -11,7 +11,7 @@ from automotive_cosim.agents import answer, prompt, prompt_parts
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.lines import one_line
-from automotive_cosim.agents.marks import marked, png
+from automotive_cosim.agents.marks import marked, png, road
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.agents.thoughts import spoken
@@ -163,7 +163,7 @@ class ModelAgent:
         pictures: tuple[bytes, ...] = ()
         if self._sees and seen.screenshot is not None:
             with_marks = _marked(seen)
-            pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
+            pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]), *road(seen))
         last = DRIVE_HISTORY if seen.on_watch else len(self._history)
         if self._profile.length is PromptLength.SHORT:
             last = SHORT_HISTORY

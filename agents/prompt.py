@@ -81,7 +81,7 @@ def turn(
             "plan": one_line(plan) or None,
             "feedback": _timed_result(observation),
             "elements": prompt_parts.told(observation.elements or ()) if is_listed else None,
-            "pictures": (PICTURES if is_listed else PICTURE) if pictures else None,
+            "pictures": _pictured(PICTURES if is_listed else PICTURE, observation) if pictures else None,
             "seen": "the screen, its elements" if is_listed else "the screen",
             "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
@@ -118,7 +118,7 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
             "goal": driver_words(observation) if is_spoken else None,
             "feedback": _timed_result(observation),
             "elements": prompt_parts.told(observation.elements or ()) if is_listed else None,
-            "pictures": PICTURE if pictures else None,
+            "pictures": _pictured(PICTURE, observation) if pictures else None,
             "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
@@ -147,6 +147,13 @@ PICTURES = (
     "The numbers are the indices below."
 )
 PICTURE = "One picture comes with this: the screen as it is now, as wide and high in pixels as x and y count."
+ROAD = "The last picture is the road: the view through the windshield, or behind the car in reverse."
+
+
+def _pictured(words: str, seen: Observation) -> str:
+    return words if seen.camera is None else f"{words} {ROAD}"
+
+
 _HANDS: Mapping[Interface, str] = {
     Interface.TOUCH: "touch screen and safety functions",
     Interface.FUNCTIONS: "functions",

@@ -12,7 +12,7 @@ from automotive_cosim.contracts.given import Interface, PromptLength
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.functions import LIGHT, Function, offered
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.observe import ALL, Channel
 
 
 class AgentPart(StrEnum):
@@ -133,6 +133,6 @@ T3A = AgentProfile("t3a", _TEXT)
 """Reads the elements (after AndroidWorld's T3A)."""
 M3A = AgentProfile("m3a", _TEXT | {Channel.SCREENSHOT})
 """Also sees the screen, raw and with numbered marks (after AndroidWorld's M3A)."""
-ASURADA = AgentProfile("asurada", frozenset(Channel), frozenset(UNCALLED), remembers=True)
+ASURADA = AgentProfile("asurada", ALL, frozenset(UNCALLED), remembers=True)
 """Also knows where it is, and can query the rules there (after the paper's ASURADA)."""
 PROFILES = {profile.name: profile for profile in (T3A, M3A, ASURADA)}

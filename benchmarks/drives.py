@@ -36,7 +36,7 @@ from automotive_cosim.drives.score import Score, score, together
 from automotive_cosim.drives.script import APART_S, Staged
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
-from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.session import play
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.writing import write_whole

@@ -21,7 +21,7 @@ import sys
 import tempfile
 import venv
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,7 +59,7 @@ def newest(package: str) -> str:
     return found[1] if found else ""
 
 
-def printed(command: list[str | Path], **settings: object) -> str:
+def printed(command: Sequence[str | Path], **settings: object) -> str:
     """What a command prints on standard output; if it fails, the last line that it prints at all."""
     ran = subprocess.run(command, capture_output=True, text=True, check=False, **settings)  # type: ignore[call-overload]
     if not ran.returncode:

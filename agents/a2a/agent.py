@@ -25,7 +25,7 @@ from automotive_cosim.contracts import UNCALLED, Action, ActionType, Observation
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, SetupError, install_hint
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import action_of, offered
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.models.base import ModelReply, ToolCall, believed
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ SPOKEN = (
     "what has to be asked"
 )
 """What the agent is told of its words."""
-CHANNELS = frozenset(Channel) - {Channel.SCREENSHOT}
+CHANNELS = ALL - {Channel.SCREENSHOT}
 """The contract has no pictures."""
 
 

@@ -8,7 +8,7 @@ from automotive_cosim.agents import prompt
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.lines import one_line
-from automotive_cosim.agents.marks import png
+from automotive_cosim.agents.marks import png, road
 from automotive_cosim.agents.native.formats import Format
 from automotive_cosim.agents.native.grid import GuiScreen
 from automotive_cosim.agents.native.syntax import END
@@ -86,7 +86,8 @@ class NativeAgent:
         screen = GuiScreen(width, height, self._form.grid)
         text = self._question(observation, screen)
         self._asking.note(StageName.PERCEIVE, observation, text)
-        reply, asked = self._asking.ask(text, (png(observation.screenshot),))
+        pictures = (png(observation.screenshot), *road(observation))
+        reply, asked = self._asking.ask(text, pictures)
         hand = Hand(screen, observation.elements or (), self._last)
         try:
             if reply.is_cut and not self._form.syntax.whole.search(reply.text):
@@ -99,10 +100,10 @@ class NativeAgent:
         except ActionError as error:
             told = f"{error}{reply.ending}"
             self._problem = f"It could not be carried out: {one_line(told)}"
-            self._asking.note(StageName.ACT, observation, told, reply, asked, 1)
+            self._asking.note(StageName.ACT, observation, told, reply, asked, len(pictures))
             raise ActionError(told) from None
         self._problem = ""
-        self._asking.note(StageName.INTERPRET, observation, reply.text, reply, asked, 1)
+        self._asking.note(StageName.INTERPRET, observation, reply.text, reply, asked, len(pictures))
         self._left.extend(found)
         return self._next(observation)
 
@@ -125,6 +126,7 @@ class NativeAgent:
                 "policy": seen.policy,
                 "goal": prompt.driver_words(seen),
                 "history": "\n".join(map(one_line, self._history)) or "nothing yet",
+                "pictures": None if seen.camera is None else f"The first picture is the screen. {prompt.ROAD}",
                 "problem": self._problem or None,
                 "passed": prompt.passed(seen),
             },

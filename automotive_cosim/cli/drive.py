@@ -61,11 +61,10 @@ def drive(
     from automotive_cosim.episode.own_prompt import instructions
     from automotive_cosim.run.drive import DriveSetup
     from automotive_cosim.run.drive_row import DriveTrialRow
-    from automotive_cosim.run.jobs import Limits
     from automotive_cosim.run.record import Recorder, check_folder, stamped_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
-    from automotive_cosim.run.trial import run_trial
+    from automotive_cosim.run.trial import Limits, run_trial
 
     under = Conditions.named(given(settings))
     limited = filled(LimitSettings, settings)

@@ -86,9 +86,9 @@ def run(
     from automotive_cosim.episode.own_prompt import instructions
     from automotive_cosim.formats.layout import PAGE
     from automotive_cosim.run.episode import EpisodeSetup
-    from automotive_cosim.run.jobs import Limits
     from automotive_cosim.run.record import check_folder, default_folder
     from automotive_cosim.run.script import read_script
+    from automotive_cosim.run.trial import Limits
     from automotive_cosim.traffic.fork import Simulations
 
     if scenario == "":

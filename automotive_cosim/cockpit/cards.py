@@ -93,7 +93,6 @@ def switch(
     *,
     key: str = "",
     name: str | None = None,
-    icon: Icon | None = None,
     group: str = "",
     disabled: str = "",
 ) -> Tile:
@@ -102,9 +101,8 @@ def switch(
     Args:
         signal: what it turns.
         state: of the cockpit.
-        key: if it is not that of the signal's control; the same for ``name`` and ``icon``.
-        name: see ``key``.
-        icon: see ``key``.
+        key: if it is not that of the signal's control.
+        name: as ``key``.
         group: tells it apart from those of the same name in other groups for whoever hears it alone.
         disabled: why it cannot be used now.
     """
@@ -114,7 +112,7 @@ def switch(
         key=key or control.key,
         text=text,
         description=say("{name}: {value}", name=group, value=text) if group else "",
-        icon=icon or control.icon,
+        icon=control.icon,
         checked=on,
         on_tap=Set(signal, not on),
         disabled=disabled,
@@ -139,9 +137,9 @@ def levels(
         signal: what it sets.
         state: of the cockpit.
         steps: each value and what it is called.
-        key: if it is not that of the signal's control; the same for ``name`` and ``icon``.
-        name: see ``key``.
-        icon: see ``key``.
+        key: if it is not that of the signal's control.
+        name: as ``key``.
+        icon: as ``key``.
         group: as of ``switch``.
         told: its description, if it is another one.
     """
@@ -206,6 +204,7 @@ def stepper(
     style: Type = Type.TITLE,
     locked: str = "",
     gauge: bool = False,
+    bare: bool = False,
 ) -> Block:
     """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once.
 
@@ -217,6 +216,7 @@ def stepper(
         style: of the value.
         locked: why it is locked while driving; empty if it is not.
         gauge: whether it shows its ends, and by a bar under the value how far it is between them.
+        bare: whether the value stands elsewhere.
     """
     control, value = CONTROLS[signal], signals[signal]
     key, name = key or control.key, name or control.name
@@ -238,12 +238,16 @@ def stepper(
         )
 
     ends = joined(" … ", (shown(signal, signals, signal.low), shown(signal, signals, signal.high)))
-    number = Label(
-        key=f"{key}.value",
-        text=shown(signal, signals),
-        description=joined(". ", (name, ends)) if gauge else name,
-        style=style,
-        align="centre",
+    number = (
+        None
+        if bare
+        else Label(
+            key=f"{key}.value",
+            text=shown(signal, signals),
+            description=joined(". ", (name, ends)) if gauge else name,
+            style=style,
+            align="centre",
+        )
     )
     share = (value - signal.low) / (signal.high - signal.low)
     bar = Bar(share=1 - share if words.more_first else share) if gauge else None

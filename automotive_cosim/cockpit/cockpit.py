@@ -26,7 +26,7 @@ from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.map.commands import Pan
 from automotive_cosim.cockpit.apps.map.lookout import sights
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
-from automotive_cosim.cockpit.apps.phone.commands import CallEmergency
+from automotive_cosim.cockpit.apps.phone.commands import CALL_EMERGENCY
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
 from automotive_cosim.cockpit.apps.store import Installed
@@ -432,7 +432,7 @@ class Cockpit:
 
     def emergency_call(self) -> Feedback:
         """Calls the emergency services."""
-        return self._perform(CallEmergency())
+        return self._perform(CALL_EMERGENCY)
 
     def ask_driver(self, text: str) -> Feedback:
         """Asks the driver something; what he answers is not the cockpit's."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -17,6 +17,21 @@ LOOKING = frozenset({"questions", "messages.read"})
 
 
 @dataclass(frozen=True, slots=True)
+class SimpleCommand(Command):
+    """A command that has nothing to say but that it is given."""
+
+    effect: Callable[[State], Feedback]
+    aimed: tuple[str, ...]
+    """What it aims at, in every state."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        return frozenset(self.aimed)
+
+    def perform(self, state: State) -> Feedback:
+        return self.effect(state)
+
+
+@dataclass(frozen=True, slots=True)
 class Set(Command):
     """Command a signal."""
 
@@ -24,7 +39,6 @@ class Set(Command):
     value: Any
 
     def aims(self, state: State) -> frozenset[str]:
-        """The signal."""
         return frozenset({self.signal.path})
 
     def perform(self, state: State) -> Feedback:
@@ -54,7 +68,6 @@ class SetAll(Command):
     said: str
 
     def aims(self, state: State) -> frozenset[str]:
-        """The signals."""
         return frozenset(signal.path for signal, _ in self.values)
 
     def perform(self, state: State) -> Feedback:
@@ -77,7 +90,6 @@ class Put(Command):
 
     @property
     def prepares(self) -> bool:
-        """Whether it is a draft."""
         return self.data.prepares
 
     def aims(self, state: State) -> frozenset[str]:
@@ -95,7 +107,6 @@ class Put(Command):
         }
 
     def perform(self, state: State) -> Feedback:
-        """The new data."""
         return state.change(self.data, self.said)
 
     def repeat(self, state: State, record: CommandRecord, keys: Collection[str]) -> None:
@@ -123,7 +134,6 @@ class AskDriver(Command):
     text: str
 
     def aims(self, state: State) -> frozenset[str]:
-        """The questions."""
         return frozenset({"questions"})
 
     def perform(self, state: State) -> Feedback:

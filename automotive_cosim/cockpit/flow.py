@@ -9,9 +9,9 @@ its width, and ``(REST, part)`` one that takes what is left.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 from automotive_cosim.cockpit.geometry import Rect
@@ -47,25 +47,33 @@ BlockItem = BlockPart | int | None | tuple[LayoutPart, BlockPart]
 
 def fill(rect: Rect, *parts: BlockPart | None) -> tuple[Widget, ...]:
     """The widgets of the parts, each of which has the whole box."""
-    return tuple(widget for part in parts for widget in _placed(part, rect))
+    found: list[Widget] = []
+    for part in parts:
+        _place(part, rect, found)
+    return tuple(found)
 
 
-def _placed(part: BlockPart | None, rect: Rect) -> Iterator[Widget]:
+def _place(part: BlockPart | None, rect: Rect, found: list[Widget]) -> None:
+    """Adds the widgets of a part; one list for all and no generators, for speed."""
     if isinstance(part, Widget):
-        object.__setattr__(part, "rect", rect)
-        yield part
+        _set(part, "rect", rect)
+        found.append(part)
     elif isinstance(part, Block):
-        inner = [
-            widget for one, box in zip(part.parts, part.divide(rect), strict=False) for widget in _placed(one, box)
-        ]
-        if part.frame is None:
-            yield from inner
-        else:
-            object.__setattr__(part.frame, "rect", rect)
-            object.__setattr__(part.frame, "children", tuple(inner))
-            yield part.frame
+        frame = part.frame
+        inner = found if frame is None else []
+        for one, box in zip(part.parts, part.divide(rect), strict=False):
+            if one is not None:
+                _place(one, box, inner)
+        if frame is not None:
+            _set(frame, "rect", rect)
+            _set(frame, "children", tuple(inner))
+            found.append(frame)
     elif part is not None:
-        yield part(rect)
+        found.append(part(rect))
+
+
+_set = object.__setattr__
+"""Widgets are frozen for all others."""
 
 
 def natural(part: BlockPart | None) -> LayoutPart:
@@ -79,20 +87,20 @@ def natural(part: BlockPart | None) -> LayoutPart:
 
 def stack(*items: BlockItem) -> Block:
     """One above the other."""
-    parts, sizes = _sized(items, natural)
-    known = [size for size in sizes if size is not None]
-    return Block(parts, lambda rect: column(rect, *sizes), sum(known) if len(known) == len(sizes) else REST)
+    parts, sizes = _sized(items, upright=True)
+    height = REST if REST in sizes else sum(size or 0 for size in sizes)
+    return Block(parts, lambda rect: column(rect, *sizes), height)
 
 
 def line(*items: BlockItem) -> Block:
     """Side by side; as high as the highest."""
-    parts, sizes = _sized(items, lambda part: REST)
+    parts, sizes = _sized(items, upright=False)
     return Block(parts, lambda rect: row(rect, *sizes), _highest(parts))
 
 
 def panels(*items: BlockItem) -> Block:
     """Side by side, a gap apart; one above the other where the box is taller than wide (``layout.panes``)."""
-    parts, sizes = _sized(items, lambda part: REST)
+    parts, sizes = _sized(items, upright=False)
     return Block(parts, lambda rect: panes(rect, *sizes))
 
 
@@ -103,9 +111,14 @@ def grid(columns: int, gap: int | tuple[int, int], *parts: BlockPart | None) -> 
     highest = _highest(parts)
     return Block(
         parts,
-        lambda rect: [cell for one in rect.rows(lines, down) for cell in one.columns(columns, across)],
+        lambda rect: _cells(rect, lines, columns, across, down),
         highest if highest is None else lines * (highest + down) - down,
     )
+
+
+@lru_cache(maxsize=2048)
+def _cells(rect: Rect, lines: int, columns: int, across: int, down: int) -> tuple[Rect, ...]:
+    return tuple(cell for one in rect.rows(lines, down) for cell in one.columns(columns, across))
 
 
 def at(shape: Callable[[Rect], Rect], *parts: BlockPart) -> Block:
@@ -130,14 +143,20 @@ def _inset(across: int, down: int, rect: Rect) -> tuple[Rect]:
 
 
 def _highest(parts: Iterable[BlockPart | None]) -> LayoutPart:
-    heights = [natural(part) for part in parts if part is not None]
-    known = [height for height in heights if height is not None]
-    return max(known) if known and len(known) == len(heights) else REST
+    highest = 0
+    for part in parts:
+        if part is not None:
+            height = natural(part)
+            if height is None:
+                return REST
+            highest = max(highest, height)
+    return highest or REST
 
 
 def _sized(
-    items: Iterable[BlockItem], size_of: Callable[[BlockPart], LayoutPart]
+    items: Iterable[BlockItem], upright: bool
 ) -> tuple[tuple[BlockPart | None, ...], tuple[LayoutPart, ...]]:
+    """The parts, None for a gap, and their sizes: down if ``upright``, else across."""
     parts, sizes = list[BlockPart | None](), list[LayoutPart]()
     for item in items:
         if item is None or isinstance(item, int):
@@ -148,5 +167,5 @@ def _sized(
             parts.append(item[1])
         else:
             parts.append(item)
-            sizes.append(size_of(item))
+            sizes.append(natural(item) if upright else REST)
     return tuple(parts), tuple(sizes)

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import cache, lru_cache
 from typing import Any
 
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.notifications import wanting
-from automotive_cosim.cockpit.apps.phone.commands import DeclineCall, TakeCall
+from automotive_cosim.cockpit.apps.phone.commands import DECLINE_CALL, TAKE_CALL
 from automotive_cosim.cockpit.apps.phone.state import Phone
 from automotive_cosim.cockpit.apps.settings.state import wifi
-from automotive_cosim.cockpit.cards import stepper
+from automotive_cosim.cockpit.cards import about, heading, stepper
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.controls import CONTROLS
-from automotive_cosim.cockpit.flow import Block, fill
+from automotive_cosim.cockpit.flow import Block, BlockPart, fill, grid, line
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
@@ -23,7 +23,7 @@ from automotive_cosim.cockpit.notices import lit, lit_in_words
 from automotive_cosim.cockpit.registry import apps_in, docked
 from automotive_cosim.cockpit.signals import ADAS, CALL, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
 from automotive_cosim.cockpit.size import ScreenSize
-from automotive_cosim.cockpit.state import Notice, State
+from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.telltales import Telltale
 from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
 from automotive_cosim.cockpit.values import sign_figure, sign_in_words, speed, speed_unit, temperature
@@ -61,26 +61,13 @@ BEFORE, AFTER = 212, 424
 _SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGNAL_3)
 
 
-@dataclass(frozen=True, slots=True)
-class _Bar:
-    """The boxes of the status bar."""
-
-    clock: Rect
-    air: Rect
-    bell: Rect
-    lamps: Rect
-    notice: Rect
-    links: tuple[Rect, Rect, Rect, Rect]
-    """Mobile network, satellites, the battery and its charge."""
-    motion: tuple[Rect, Rect, Rect]
-    """Gear, speed and its unit."""
-    sign: Rect
-
-
 @cache
-def _bar(size: ScreenSize) -> _Bar:
-    """From the left what time brings, from the right what the drive does; between them, or in a second line, what
-    comes and goes."""
+def _bar(size: ScreenSize) -> tuple[Rect, ...]:
+    """The boxes of the status bar in the order of ``status_bar``, then those of the callouts and of the limit sign.
+
+    From the left what time brings, from the right what the drive does; between them, or in a second line, what
+    comes and goes.
+    """
     lines = size.status.rows(size.bars, 0)
     left, between, right = row(lines[0], BEFORE, REST, AFTER)
     room = lines[1].inset(MARGIN, 0) if size.bars > 1 else between
@@ -90,135 +77,80 @@ def _bar(size: ScreenSize) -> _Bar:
     mobile, _, fix, _, cell, _, charge, _, gear, _, pace, _, unit, _, sign, _ = row(
         right, 28, 8, 28, 8, 28, -2, 56, 10, 36, 6, 76, 8, 52, 8, 50, MARGIN
     )
-    return _Bar(
+    return (
         clock,
         air,
         bell.middle(48, 48),
         lamps.middle(lamps.width, 28),
+        mobile.middle(28, 28),
+        fix.middle(28, 28),
+        cell.middle(28, 28),
+        charge,
+        gear.middle(36, 36),
+        pace,
+        unit.moved(0, 6),
         notice.left(min(notice.width, NOTICE_WIDTH)).inset(0, 6),
-        (mobile.middle(28, 28), fix.middle(28, 28), cell.middle(28, 28), charge),
-        (gear.middle(36, 36), pace, unit.moved(0, 6)),
         sign.middle(50, 50),
     )
 
 
 def status_bar(state: State) -> tuple[Widget, ...]:
     """What is there on every screen: clock, weather, bell, tell-tales, links, battery, gear and speed."""
-    signals, telltales = state.signals, lit(state)
-    bar = _bar(state.size)
-    return (
+    signals, telltales, outside = state.signals, lit(state), state.outside
+    air, unit = temperature(signals, signals[OUTSIDE.TEMPERATURE], 0), speed_unit(signals)
+    fix = outside is not None and outside.gps is not None and outside.gps.has_fix
+    bell = Button(
+        key="status.notifications",
+        description=say("Notifications: {count}", count=len(wanting(state)) + len(state.notices)),
+        icon=Icon.BELL_OFF if state.of(Phone).do_not_disturb else Icon.BELL,
+        icon_size=24,
+        look=Look.PLAIN,
+        on_tap=Back() if state.screen == "notifications" else Show("notifications"),
+    )
+    satellites = Glyph(
+        key="status.gps",
+        description=say("GPS fix") if fix else say("No GPS fix"),
+        icon=Icon.GPS if fix else Icon.GPS_OFF,
+        size=24,
+        tone="text" if fix else "muted",
+    )
+    gear = Label(
+        key="status.gear",
+        text=signals[MOTION.GEAR],
+        description=say("Gear"),
+        style=Type.STRONG,
+        align="centre",
+        plate=True,
+    )
+    pace = Label(
+        key="status.speed",
+        text=speed(signals, signals[MOTION.SPEED]),
+        description=say("Speed in {unit}", unit=unit),
+        style=Type.HEADLINE,
+        align="right",
+    )
+    parts = (
+        Label(key="status.clock", text=state.clock, description=say("Local time"), style=Type.TITLE),
+        replace(heading(air, "status.outside_temperature"), description=say("Outside temperature")),
+        bell,
+        Telltales(key="status.telltales", description=lit_in_words(telltales), lit=telltales),
+        _network(state),
+        satellites,
+        Glyph(icon=Icon.BATTERY, size=24, tone="muted"),
         Label(
-            rect=bar.clock,
-            key="status.clock",
-            text=state.clock,
-            description=say("Local time"),
-            style=Type.TITLE,
-        ),
-        Label(
-            rect=bar.air,
-            key="status.outside_temperature",
-            text=temperature(signals, signals[OUTSIDE.TEMPERATURE], 0),
-            description=say("Outside temperature"),
+            key="status.battery",
+            text=f"{signals[ENERGY.LEVEL]:.0f} %",
+            description=say("Battery"),
             style=Type.LABEL,
-            tone="muted",
         ),
-        Button(
-            rect=bar.bell,
-            key="status.notifications",
-            description=say("Notifications: {count}", count=len(wanting(state)) + len(state.notices)),
-            icon=Icon.BELL_OFF if state.of(Phone).do_not_disturb else Icon.BELL,
-            icon_size=24,
-            look=Look.PLAIN,
-            on_tap=Back() if state.screen == "notifications" else Show("notifications"),
-        ),
-        Telltales(rect=bar.lamps, key="status.telltales", description=lit_in_words(telltales), lit=telltales),
-        *_links(bar.links, state),
-        *_motion(bar.motion, state),
+        gear,
+        pace,
+        about("status.speed_unit", unit, 1),
     )
+    return fill(state.size.status, Block(parts, lambda _: _bar(state.size)))
 
 
-def callouts(state: State) -> tuple[Widget, ...]:
-    """What comes and goes in the status bar: a caller, a notice or a call, and the limit sign of the camera."""
-    told: tuple[Widget, ...] = ()
-    bar = _bar(state.size)
-    ringing, partner = state.signals[CALL.RINGING], state.signals[CALL.PARTNER]
-    if ringing:
-        told = _incoming(bar.notice, ringing, state)
-    elif state.notice is not None:
-        told = (_pill(bar.notice, state.notice, state),)
-    elif partner:
-        words = say("On the phone with {who}", who=partner)
-        told = (
-            Pill(
-                rect=bar.notice,
-                key="call.running",
-                text=words,
-                icon=Icon.IN_CALL,
-                severity=Severity.INFO,
-                on_tap=Show("phone"),
-            ),
-        )
-    return (*told, *_limit_sign(bar.sign, state))
-
-
-def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
-    """The newest notice. A tap leads to its subject, or removes it."""
-    here = (state.screen, state.picked.get(state.screen, ""))
-    return Pill(
-        rect=rect,
-        key="status.notice",
-        text=notice.text,
-        icon=notice.icon,
-        severity=notice.tone,
-        on_tap=Show(*notice.opens) if notice.opens and notice.opens != here else Dismiss(),
-    )
-
-
-def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
-    """The caller, and the possible reactions, on every screen."""
-    picture, _, name, _, acts = row(rect, 40, 4, REST, 8, 3 * 64)
-    answer, decline, message = acts.columns(3, 8)
-    return (
-        Glyph(rect=picture, icon=Icon.CALL_IN, size=30, tone="good"),
-        Label(
-            rect=name,
-            key="call.incoming",
-            text=who,
-            description=say("Incoming call"),
-            style=Type.LABEL,
-            lines=2,
-        ),
-        Button(
-            rect=answer,
-            key="call.answer",
-            description=say("Answer the call"),
-            icon=Icon.PHONE,
-            look=Look.ACCENT,
-            on_tap=TakeCall(),
-        ),
-        Button(
-            rect=decline,
-            key="call.decline",
-            description=say("Decline the call"),
-            icon=Icon.HANG_UP,
-            look=Look.CRITICAL,
-            on_tap=DeclineCall(),
-        ),
-        Button(
-            rect=message,
-            key="call.reply",
-            description=say("Reply with a message"),
-            icon=Icon.MESSAGE,
-            on_tap=Show("thread", who),
-            disabled=say("Choose a reply below")
-            if (state.screen, state.picked.get("thread")) == ("thread", who)
-            else "",
-        ),
-    )
-
-
-def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:
-    mobile, satellites, battery, charge = boxes
+def _network(state: State) -> Glyph:
     outside = state.outside
     online = state.signals[LINK.ONLINE] and outside is not None
     bars = outside.connectivity.signal_bars if outside is not None else 0
@@ -230,76 +162,80 @@ def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, 
             if wifi(state)
             else counted("{network}, {n} bar", "{network}, {n} bars", bars, network=network)
         )
-    fix = outside is not None and outside.gps is not None and outside.gps.has_fix
-    level = state.signals[ENERGY.LEVEL]
-    return (
-        Glyph(
-            rect=mobile,
-            key="status.connectivity",
-            description=words,
-            icon=Icon.SIGNAL_OFF if not online else Icon.WIFI if wifi(state) else _SIGNAL[bars],
-            size=24,
-            tone="text" if online else "muted",
-        ),
-        Glyph(
-            rect=satellites,
-            key="status.gps",
-            description=say("GPS fix") if fix else say("No GPS fix"),
-            icon=Icon.GPS if fix else Icon.GPS_OFF,
-            size=24,
-            tone="text" if fix else "muted",
-        ),
-        Glyph(rect=battery, icon=Icon.BATTERY, size=24, tone="muted"),
-        Label(
-            rect=charge,
-            key="status.battery",
-            text=f"{level:.0f} %",
-            description=say("Battery"),
-            style=Type.LABEL,
-        ),
+    return Glyph(
+        key="status.connectivity",
+        description=words,
+        icon=Icon.SIGNAL_OFF if not online else Icon.WIFI if wifi(state) else _SIGNAL[bars],
+        size=24,
+        tone="text" if online else "muted",
     )
 
 
-def _motion(boxes: tuple[Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:
-    signals = state.signals
-    gear, pace, unit = boxes
-    return (
-        Label(
-            rect=gear,
-            key="status.gear",
-            text=signals[MOTION.GEAR],
-            description=say("Gear"),
-            style=Type.STRONG,
-            align="centre",
-            plate=True,
-        ),
-        Label(
-            rect=pace,
-            key="status.speed",
-            text=speed(signals, signals[MOTION.SPEED]),
-            description=say("Speed in {unit}", unit=speed_unit(signals)),
-            style=Type.HEADLINE,
-            align="right",
-        ),
-        Label(
-            rect=unit,
-            key="status.speed_unit",
-            text=speed_unit(signals),
-            style=Type.CAPTION,
-            tone="muted",
+def callouts(state: State) -> tuple[Widget, ...]:
+    """What comes and goes in the status bar: a caller, a notice or a call, and the limit sign of the camera."""
+    *_, room, sign = _bar(state.size)
+    return *fill(room, _callout(state)), *fill(sign, _limit_sign(state))
+
+
+def _callout(state: State) -> BlockPart | None:
+    ringing, partner, notice = state.signals[CALL.RINGING], state.signals[CALL.PARTNER], state.notice
+    if ringing:
+        return _incoming(ringing, state)
+    if notice is not None:  # a tap leads to its subject, or removes it
+        here = (state.screen, state.picked.get(state.screen, ""))
+        return Pill(
+            key="status.notice",
+            text=notice.text,
+            icon=notice.icon,
+            severity=notice.tone,
+            on_tap=Show(*notice.opens) if notice.opens and notice.opens != here else Dismiss(),
+        )
+    if partner:
+        return Pill(
+            key="call.running",
+            text=say("On the phone with {who}", who=partner),
+            icon=Icon.IN_CALL,
+            severity=Severity.INFO,
+            on_tap=Show("phone"),
+        )
+    return None
+
+
+def _incoming(who: str, state: State) -> Block:
+    """The caller, and the possible reactions, on every screen."""
+    name = Label(key="call.incoming", text=who, description=say("Incoming call"), style=Type.LABEL, lines=2)
+    shown = (state.screen, state.picked.get("thread")) == ("thread", who)
+
+    def act(key: str, words: str, icon: Icon, on_tap: Message, look: Look = Look.TONAL, why: str = "") -> Button:
+        return Button(key=f"call.{key}", description=words, icon=icon, look=look, on_tap=on_tap, disabled=why)
+
+    acts = grid(
+        3,
+        8,
+        act("answer", say("Answer the call"), Icon.PHONE, TAKE_CALL, Look.ACCENT),
+        act("decline", say("Decline the call"), Icon.HANG_UP, DECLINE_CALL, Look.CRITICAL),
+        act(
+            "reply",
+            say("Reply with a message"),
+            Icon.MESSAGE,
+            Show("thread", who),
+            why=say("Choose a reply below") if shown else "",
         ),
     )
+    return line((40, Glyph(icon=Icon.CALL_IN, size=30, tone="good")), 4, name, 8, (3 * 64, acts))
 
 
-def _limit_sign(rect: Rect, state: State) -> tuple[Widget, ...]:
+def _limit_sign(state: State) -> Widget | None:
     limit = state.signals[ADAS.LIMIT_SIGN]
     if not state.sign_camera or limit is None:
-        return ()
+        return None
     unit = "km/h" if state.outside is None else state.outside.sign_unit
-    told = say("Limit sign {limit}", limit=sign_in_words(state.signals, limit, unit))
-    country = "" if state.outside is None else state.outside.sign_country
-    figure = sign_figure(limit, unit)
-    return (LimitSign(rect=rect, key="status.limit_sign", text=figure, description=told, country=country),)
+    return LimitSign(
+        key="status.limit_sign",
+        text=sign_figure(limit, unit),
+        description=say("Limit sign {limit}", limit=sign_in_words(state.signals, limit, unit)),
+        country="" if state.outside is None else state.outside.sign_country,
+    )
 
 
 def dock(state: State) -> tuple[Widget, ...]:

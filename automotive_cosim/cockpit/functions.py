@@ -7,7 +7,7 @@ recorded, judged and replayed as a touch is.
     @offered
     def honk(state: State) -> Message:
         \"\"\"Sound the horn.\"\"\"
-        return Honk()
+        return HONK
 
     set_hvac_temperature(which="driver", celsius=21.5)
 """

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
+from automotive_cosim.cockpit.flow import Block, fill, line
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
-from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import BACKSPACE, Enter, Focus, Key
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.state import State
@@ -40,10 +40,10 @@ def keyboard(field: Field, state: State) -> Card:
     lines = state.size.keyboard.inset(MARGIN, 8).rows(5, GAP)
     keys = [
         Button(rect=cell, key=f"keyboard.{letter}", text=letter, style=Type.BODY, on_tap=Key(field.key, letter))
-        for line, row in zip(lines, (DIGITS, *letters), strict=False)
-        for cell, letter in zip(_centred(line, len(row)), row, strict=True)
+        for box, row in zip(lines, (DIGITS, *letters), strict=False)
+        for cell, letter in zip(_centred(box, len(row)), row, strict=True)
     ]
-    card = Card(rect=state.size.keyboard, children=(*keys, *_lowest(lines[-1], field)))
+    card = Card(rect=state.size.keyboard, children=(*keys, *fill(lines[-1], _lowest(field))))
     return translated(card, language)
 
 
@@ -63,32 +63,24 @@ def _centred(line: Rect, count: int) -> tuple[Rect, ...]:
     return Rect(line.x + (line.width - wide) // 2, line.y, wide, line.height).columns(count, GAP)
 
 
-def _lowest(line: Rect, field: Field) -> tuple[Widget, ...]:
-    hide, _, erase, _, space, _, enter = row(line, 160, GAP, 160, GAP, REST, GAP, 260)
-    return (
-        Button(
-            rect=hide,
-            key="keyboard.hide",
-            description=say("Hide the keyboard"),
-            icon=Icon.KEYBOARD_CLOSE,
-            on_tap=Focus(""),
-        ),
-        Button(
-            rect=erase,
-            key="keyboard.backspace",
-            description=say("Delete the last character"),
-            icon=Icon.ERASE,
-            on_tap=Key(field.key, BACKSPACE),
-            disabled="" if field.text else say("There is nothing to delete"),
-        ),
-        Button(rect=space, key="keyboard.space", text=say("Space"), on_tap=Key(field.key, " ")),
-        Button(
-            rect=enter,
-            key="keyboard.enter",
-            description=say("Take the first result"),
-            icon=Icon.CHECK,
-            look=Look.ACCENT,
-            on_tap=Enter(field.on_enter),
-            disabled="" if field.on_enter else say("No matches yet"),
-        ),
+def _lowest(field: Field) -> Block:
+    hide = Button(
+        key="keyboard.hide", description=say("Hide the keyboard"), icon=Icon.KEYBOARD_CLOSE, on_tap=Focus("")
     )
+    erase = Button(
+        key="keyboard.backspace",
+        description=say("Delete the last character"),
+        icon=Icon.ERASE,
+        on_tap=Key(field.key, BACKSPACE),
+        disabled="" if field.text else say("There is nothing to delete"),
+    )
+    space = Button(key="keyboard.space", text=say("Space"), on_tap=Key(field.key, " "))
+    enter = Button(
+        key="keyboard.enter",
+        description=say("Take the first result"),
+        icon=Icon.CHECK,
+        look=Look.ACCENT,
+        on_tap=Enter(field.on_enter),
+        disabled="" if field.on_enter else say("No matches yet"),
+    )
+    return line((160, hide), GAP, (160, erase), GAP, space, GAP, (260, enter))

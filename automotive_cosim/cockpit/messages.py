@@ -79,7 +79,6 @@ class Dismiss(Message):
     all: bool = False
 
     def perform(self, state: State) -> Feedback:
-        """The notices that stay."""
         if self.all:
             state.notices = ()
             return Feedback(FeedbackCode.OK, say("The notifications are cleared"))
@@ -95,7 +94,6 @@ class Focus(Message):
     field: str
 
     def perform(self, state: State) -> Feedback:
-        """The keyboard."""
         if state.is_typing and state.focus == self.field:
             return UNCHANGED
         state.focus, state.keyboard = self.field, bool(self.field)
@@ -110,7 +108,6 @@ class Key(Message):
     letters: str
 
     def perform(self, state: State) -> Feedback:
-        """The longer or shorter text."""
         text = state.typed.get(self.field, "")
         longer = text[:-1] if self.letters == BACKSPACE else text + self.letters
         if longer == text:
@@ -128,7 +125,6 @@ class Enter(Message):
 
     @property
     def command(self) -> Command | None:
-        """The command that it sends."""
         return None if self.then is None else self.then.command
 
     def perform(self, state: State) -> Feedback:

@@ -15,9 +15,12 @@ class Channel(StrEnum):
     GPS = "gps"
     CONNECTIVITY = "connectivity"
     CONTEXT = "context"
+    CAMERA = "camera"
+    """The view through the windshield; only for who asks for it."""
 
 
-ALL = frozenset(Channel)
+ALL = frozenset(Channel) - {Channel.CAMERA}
+"""Those that an agent is given unless it or its user says otherwise."""
 PLACE = frozenset({Channel.GPS, Channel.CONTEXT})
 
 
@@ -65,6 +68,18 @@ class See(StrEnum):
     """As the picture: no list, no ids, no descriptions; an action has to give a point."""
     NOTHING = "nothing"
     """Not at all, for who calls functions."""
+    CAMERA = "camera"
+    """As both, and who is shown the picture is also shown the road: the view through the windshield."""
+
+    @property
+    def words(self) -> str:
+        """For people: ``picture alone``."""
+        return "the road too" if self is See.CAMERA else f"{self} alone"
+
+    def added(self, channels: frozenset[Channel]) -> frozenset[Channel]:
+        """Channels that who wants these gets besides."""
+        sees = self is See.CAMERA and Channel.SCREENSHOT in channels
+        return frozenset({Channel.CAMERA}) if sees else frozenset()
 
     @property
     def withheld(self) -> frozenset[Channel]:
@@ -74,6 +89,7 @@ class See(StrEnum):
             See.TREE: frozenset({Channel.SCREENSHOT}),
             See.PICTURE: frozenset({Channel.ELEMENTS}),
             See.NOTHING: frozenset({Channel.SCREENSHOT, Channel.ELEMENTS}),
+            See.CAMERA: frozenset[Channel](),
         }[self]
 
 

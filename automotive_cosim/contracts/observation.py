@@ -121,6 +121,8 @@ class Observation:
     elements: tuple[Element, ...] | None = None
     screenshot: npt.NDArray[np.uint8] | None = None
     """(height, width, 3), RGB."""
+    camera: npt.NDArray[np.uint8] | None = None
+    """The view through the windshield, or behind the car in reverse: (360, 640, 3), RGB."""
     vehicle: VehicleState | None = None
     connectivity: Connectivity | None = None
     gps: GpsFix | None = None

@@ -72,3 +72,7 @@ class RoadSnapshot:
     vehicles: tuple[SeenVehicle, ...]
     lights: tuple[tuple[str, str], ...]
     """The state of each signal program, with one of SUMO's letters per link: ``G g y Y r R u s o O``."""
+    people: tuple[SeenVehicle, ...] = ()
+    """Who walks."""
+    closed: tuple[str, ...] = ()
+    """Lanes that roadworks and closures keep cars out of."""

@@ -11,9 +11,11 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 
 import numpy as np
+import numpy.typing as npt
 
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.signals import GLASS, LIGHTS, MOTION
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, Element, Feedback, RoadSnapshot
 from automotive_cosim.contracts.errand import Errand
@@ -23,10 +25,13 @@ from automotive_cosim.geo.connectivity import Modem
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.signs import signs_of
+from automotive_cosim.geo.sun import sun_at
 from automotive_cosim.scenarios import LinkAt, Scenario, WeatherAt
 from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.future import SharedFuture
 from automotive_cosim.traffic.shadow import SharedTraffic
+from automotive_cosim.view.paint import picture
+from automotive_cosim.view.scene import Outside, OwnCar, sight_of
 
 TICK_S = 1.0
 """Update interval of the cockpit, the receiver and the place; the road runs at SUMO's own step."""
@@ -77,6 +82,37 @@ class CoSimulation:
             moments.append(self.moment)
             left_s -= tick_s
         return tuple(moments)
+
+    def view(self) -> npt.NDArray[np.uint8]:
+        """The view through the windshield now, or behind the car in reverse: (360, 640, 3), RGB, read-only.
+
+        Raises:
+            TrafficError: the traffic simulation failed.
+        """
+        moment, signals = self.moment, self.cockpit.signals
+        driving = moment.driving
+        sun = None
+        if driving.lon_deg is not None and driving.lat_deg is not None:
+            sun = sun_at(driving.lon_deg, driving.lat_deg, moment.local_time)
+        unit, country = (self.car.read_sign or (None, "km/h", ""))[1:]
+        outside = Outside(
+            moment.weather,
+            None if sun is None else sun.elevation_deg,
+            None if sun is None else sun.azimuth_deg,
+            driving.road.in_tunnel,
+            bool(driving.road.lit),
+            country,
+            unit,
+        )
+        car = OwnCar(
+            bool(signals[LIGHTS.LOW_BEAM]),
+            bool(signals[LIGHTS.HIGH_BEAM]),
+            float(signals[GLASS.WINDSHIELD_FOG]),
+            float(signals[GLASS.WINDSHIELD_FILM]),
+            reverse=signals[MOTION.GEAR] == "R",
+        )
+        sight = sight_of(self.traffic.shapes(), self.traffic.network, self.car.signs)
+        return picture(sight.scene(self.traffic.look(), driving, outside, car))
 
     def freshened(self, departed: Cockpit, *, with_air: bool) -> CoSimulation:
         """This drive with the car as if it had just departed here (``Car.freshened``); the road is the same one."""

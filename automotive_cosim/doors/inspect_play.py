@@ -86,7 +86,7 @@ def outcome_of(state: TaskState) -> Json:
 
 async def _finish(state: TaskState, service: EpisodeService, episode_id: str) -> None:
     outcome = await _threaded(lambda: service.finish(episode_id))
-    state.store.set(OUTCOME, outcome.as_json())
+    state.store.set(OUTCOME, outcome)
 
 
 async def _threaded(call: Callable[[], Any]) -> Any:
@@ -127,7 +127,5 @@ def _calls(service: EpisodeService, episode_id: str, function: Function) -> Any:
 
 def _content(turn: EpisodeTurn) -> list[Content]:
     found: list[Content] = [ContentText(text=json.dumps(turn.as_json(), ensure_ascii=False))]
-    picture = turn.picture
-    if picture is not None:
-        found.append(ContentImage(image=f"data:image/png;base64,{base64.b64encode(picture).decode()}"))
-    return found
+    data = (base64.b64encode(picture).decode() for picture in turn.pictures)
+    return [*found, *(ContentImage(image=f"data:image/png;base64,{each}") for each in data)]

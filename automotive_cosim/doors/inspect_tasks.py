@@ -31,7 +31,6 @@ from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.plan import choose, families_named
 from automotive_cosim.run.row import as_json, from_json
-from automotive_cosim.service.turn import Outcome
 from automotive_cosim.tasks import CATALOGUE
 
 __all__ = ["cockpit", "driver", "drives", "high", "low", "verdict"]
@@ -123,11 +122,10 @@ def _verdict() -> Scorer:
 
     async def score(state: TaskState, target: Target) -> Score:
         stored = outcome_of(state)
-        outcome = from_json(Outcome, stored)
-        parts = outcome.verdict.parts
+        parts = stored["verdict"]["parts"]
         return Score(
-            value={"success": int(outcome.success)} | {name: int(part.ok) for name, part in parts.items()},
-            explanation="\n".join(f"{name}: {part.why}" for name, part in parts.items()),
+            value={"success": int(stored["success"])} | {name: int(part["ok"]) for name, part in parts.items()},
+            explanation="\n".join(f"{name}: {part['why']}" for name, part in parts.items()),
             metadata=stored,
         )
 

@@ -254,7 +254,7 @@ class CockpitTools:
     @_told
     def finish(self, episode_id: EpisodeId) -> CallToolResult:
         """End the episode and get its verdict. One without a declared status is judged as it is."""
-        return _result(self._service.finish(episode_id).as_json())
+        return _result(self._service.finish(episode_id))
 
 
 class _Progress(Observer):
@@ -283,11 +283,8 @@ def _channels(names: list[str] | None) -> frozenset[Channel]:
 
 
 def _turn(turn: EpisodeTurn) -> CallToolResult:
-    picture = turn.picture
-    if picture is None:
-        return _result(turn.as_json())
-    data = base64.b64encode(picture).decode()
-    return _result(turn.as_json(), ImageContent(type="image", data=data, mime_type="image/png"))
+    data = (base64.b64encode(picture).decode() for picture in turn.pictures)
+    return _result(turn.as_json(), *(ImageContent(type="image", data=each, mime_type="image/png") for each in data))
 
 
 def _result(value: Json, *pictures: ContentBlock) -> CallToolResult:

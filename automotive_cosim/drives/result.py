@@ -2,42 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.cosim.exposed import states_of, stretches
 from automotive_cosim.drives.harm import distraction_s
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.session import DriveSession
-from automotive_cosim.episode.specification import End
 from automotive_cosim.measures import exposure, following_figures
-
-
-@dataclass(frozen=True, slots=True)
-class DriveOutcome:
-    """The result of a drive that is over."""
-
-    episode_id: str
-    family: str
-    seed: int
-    end: End
-    sim_seconds: float
-    """Simulated seconds from departure to the end."""
-    result: Mapping[str, Any]
-    """``figures``."""
-
-    @property
-    def trace_sha256(self) -> str:
-        """Hash of all steps: equal for the same specification and actions, whoever sent them."""
-        sha256: str = self.result["trace_sha256"]
-        return sha256
-
-    def as_json(self) -> Json:
-        """The outcome as a JSON object."""
-        return asdict(self) | {"trace_sha256": self.trace_sha256}
 
 
 def figures(session: DriveSession) -> dict[str, Any]:

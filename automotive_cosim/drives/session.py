@@ -25,8 +25,7 @@ from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, Tracker
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
-from automotive_cosim.episode.baseline import Baseline
-from automotive_cosim.episode.judged import JudgedSession
+from automotive_cosim.episode.judged import Baseline, JudgedSession
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.result import DriveOutcome, figures
+from automotive_cosim.drives.result import figures
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
@@ -17,6 +18,7 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import EpisodeSpec, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.interface.trace import plain
 from automotive_cosim.traffic.fork import Simulations
 
 MOST_STEPS = 100_000
@@ -83,11 +85,10 @@ class DriveSpec:
             world.close()
             raise
 
-    def outcome(self, episode_id: str, session: DriveSession) -> DriveOutcome:
+    def outcome(self, session: DriveSession) -> Json:
         """The result, once the drive is over."""
-        assert session.end is not None
-        seconds = round(session.seconds, 3)
-        return DriveOutcome(episode_id, self.family, self.seed, session.end, seconds, figures(session))
+        result = {name: plain(each) for name, each in figures(session).items()}
+        return {"family": self.family, "seed": self.seed, "result": result}
 
 
 TrialSpec = EpisodeSpec | DriveSpec

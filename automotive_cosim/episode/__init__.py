@@ -6,10 +6,9 @@ settings       what to run and where, as words
 specification  what to run, and under which conditions; seeds
 observer       watches the progress of an episode
 situation      drives until a task's trigger holds, and hands over
-session        an agent at the cockpit: perform, advance, observe
-baseline       the same drive with nobody at the cockpit
-episode        a session that is judged, and can be branched
-loop           plays any actor to the end
+session        an agent at the cockpit: perform, advance, observe; plays any actor to the end
+judged         a session that is judged, beside the same drive with nobody at the cockpit
+episode        a session on a task, which can be branched
 
 It does not depend on gymnasium: ``envs`` adapts it, and so do ``run``, ``proof`` and ``studies``.
 """

@@ -88,9 +88,10 @@ class Conditions:
         See,
         OneOf(See, "way to see the screen"),
         Words(
-            "Sees", "{} alone", "see_{}", "Success by how the agent sees the screen",
+            "Sees", "{0.words}", "see_{}", "Success by how the agent sees the screen",
             "The list of elements, the picture, or both; the picture alone comes without ids and descriptions. "
-            "Who calls functions may also see nothing of the screen.",
+            "Who calls functions may also see nothing of the screen. With camera, agents that take pictures "
+            "also see the road through the windshield.",
         ),
     ] = See.BOTH  # fmt: skip
     """How the agent sees the screen."""

@@ -5,13 +5,16 @@ step:  action -> perform -> advance -> observe
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Self
+from math import inf
+from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from automotive_cosim.cockpit.actions import check
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.contracts import (
     BY_HAND,
@@ -30,6 +33,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
+from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.reckoning import Roads
@@ -341,3 +345,65 @@ def _seen(
     elements = () if lean else world.cockpit.elements()
     seen = observe(world, goal, begun_s, elements, feedback, channels, said, policy)
     return elements, told.observation(seen, world.moment)
+
+
+class Actor(Protocol):
+    """Whoever acts in a session."""
+
+    def act(self, observation: Observation) -> Action:
+        """The next action.
+
+        Raises:
+            ActionError: its answer could not be read; the step still counts.
+            OutOfBudgetError: its budget is spent; the session ends as it is.
+            AgentError: it can act no more; the session ends, and is not a success.
+        """
+        ...
+
+
+T = TypeVar("T", bound=Session)
+
+
+def play(
+    session: T,
+    actor: Actor,
+    stepped: Callable[[T, Sequence[Element]], None] = lambda session, seen: None,
+    thought_s: Callable[[], float] = lambda: 0.0,
+    wall_s: float = inf,
+) -> End:
+    """Lets an actor act until the session is over, and returns why it is.
+
+    Args:
+        session: the session, which may be under way.
+        actor: the actor, which has been told the goal.
+        stepped: called after each step, including the last, with the session and the screen that was acted on.
+        thought_s: gives the simulated seconds that the actor's last answer took, which pass before its action.
+        wall_s: wall seconds after which it is cut off.
+
+    Raises:
+        TrafficError: the traffic simulation failed.
+        ModelError: the actor's model could not be reached.
+    """
+    ends_s = time.monotonic() + wall_s
+    while session.end is None:
+        if time.monotonic() >= ends_s:
+            session.cut_off(End.OUT_OF_BUDGET)
+            break
+        seen = session.elements
+        try:
+            action = check(actor.act(session.observation))
+        except ActionError as error:
+            session.think(thought_s())
+            session.refuse(str(error))
+        except OutOfBudgetError:
+            session.cut_off(End.OUT_OF_BUDGET)
+            break
+        except AgentError as error:
+            session.give_up(str(error))
+            break
+        else:
+            session.think(thought_s())
+            session.step(action)
+        stepped(session, seen)
+    assert session.end is not None
+    return session.end

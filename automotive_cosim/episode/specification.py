@@ -65,7 +65,8 @@ class SessionSetup:
     @property
     def given(self) -> frozenset[Channel]:
         """The channels that the agent gets."""
-        return self.channels - self.conditions.geo.withheld - self.conditions.see.withheld
+        see = self.conditions.see
+        return (self.channels | see.added(self.channels)) - self.conditions.geo.withheld - see.withheld
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,6 +41,8 @@ CELL_BYTES = 2**29
 """Of all texts of a table together: one text of a workbook may stand in every cell."""
 BOOK_TIMES = 100
 """What a workbook says that it unpacks to, compared with its size, beyond ``FREELY_UNPACKED_BYTES``."""
+PATTERN = 200
+"""Characters of a pattern of names: to prepare a longer one takes longer than reading the file."""
 TASK_TEXT = 10_000
 """Characters of one text of a task; a long one has a thousand."""
 TASK_COST = 5_000_000
@@ -97,6 +99,7 @@ _TREE = f"{_PACKED}; {KEPT_ELEMENTS:,} elements, {_mb(TAG_BYTES)} a tag, no docu
 
 READERS = (
     BoundedReader("TOML (scenario, plan, rules, space) and scripts of actions", "formats.files", _mb(TEXT_BYTES)),
+    BoundedReader("patterns in them, of tasks and streets", "formats.words", f"{PATTERN} characters"),
     BoundedReader(
         "tasks in TOML",
         "tasking.reading",

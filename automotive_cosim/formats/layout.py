@@ -5,6 +5,7 @@
                     trace
     steps.jsonl     one line per step, written step by step: what a page shows, and hashes of the state for a replay
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
+                    road_000.jpg, ...: the view through the windshield, if the agent is given it
     road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
 
 ``run`` adds a film and a page, and the whole state to each line of its steps; a pair is a folder with both. In the
@@ -31,6 +32,11 @@ PICTURES = "pictures"
 LIVE = "live"
 WATCHED = "watched"
 """A file in ``LIVE`` that is locked while somebody watches."""
+
+
+def road_view(folder: Path, step: int) -> Path:
+    """Path of the view through the windshield after a step, for agents that are given it."""
+    return folder / SCREENSHOTS / f"road_{step:03d}.jpg"
 
 
 def screenshot(folder: Path, step: int) -> Path:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from datetime import date, time
+from fnmatch import fnmatchcase
 from reprlib import Repr
 from typing import Any
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.formats import bounds
 
 _SHORT = Repr()
 _SHORT.maxstring = _SHORT.maxother = 60
@@ -47,6 +49,11 @@ def members(schema: Json, root: Json) -> Iterator[Json]:
 def choices(schema: Json) -> list[Any]:
     """The only valid values, if they are listed."""
     return [schema["const"]] if "const" in schema else list(schema.get("enum", ()))
+
+
+def matches(name: str, pattern: str) -> bool:
+    """Whether a name fits a pattern with ``*`` and ``?``; one that is longer than any name fits none."""
+    return len(pattern) <= bounds.PATTERN and fnmatchcase(name, pattern)
 
 
 def expected(schemas: Sequence[Json], root: Json) -> str:

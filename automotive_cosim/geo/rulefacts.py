@@ -11,13 +11,13 @@ import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, time
-from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Annotated, Any
 
 import shapely
 from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.formats.annotations import Called, Form, Latitude, Longitude, Made, OneOf
+from automotive_cosim.formats.words import matches
 from automotive_cosim.geo.weather import PHENOMENA
 
 if TYPE_CHECKING:
@@ -179,7 +179,7 @@ def _inside(facts: RuleFacts, area: shapely.Polygon) -> bool | None:
 
 def _on_street(facts: RuleFacts, patterns: tuple[str, ...]) -> bool:
     street = folded(facts.street)
-    return any(fnmatchcase(street, pattern) for pattern in patterns)
+    return any(matches(street, pattern) for pattern in patterns)
 
 
 def _on_class(facts: RuleFacts, classes: tuple[str, ...]) -> bool | None:

@@ -34,16 +34,17 @@ class LocalSigns:
     def on(self, driving: DrivingState) -> DrivingState:
         """The state with the signs of the country."""
         road, ahead = driving.road, driving.ahead
-        here, following = self._limit(road.limit), self._limit(ahead.next_limit)
-        assert here is not None
+        here = self.shown(road.limit)
+        following = None if ahead.next_limit is None else self.shown(ahead.next_limit)
         return replace(
             driving,
             road=replace(road, limit=here, limit_hours=_AMOUNT.sub(self._amount, road.limit_hours)),
             ahead=replace(ahead, next_limit=following),
         )
 
-    def _limit(self, limit: Limit | None) -> Limit | None:
-        if limit is None or limit.mps is None:
+    def shown(self, limit: Limit) -> Limit:
+        """A limit of the network as it is signed."""
+        if limit.mps is None:
             return limit
         return Limit(self._rounded(limit.mps), limit.source) if limit.is_posted else Limit(None, limit.source)
 

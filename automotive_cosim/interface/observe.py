@@ -43,6 +43,7 @@ def observe(
         said=said,
         elements=elements if Channel.ELEMENTS in channels else None,
         screenshot=world.cockpit.screenshot() if Channel.SCREENSHOT in channels else None,
+        camera=world.view() if Channel.CAMERA in channels else None,
         vehicle=world.cockpit.vehicle_state() if Channel.VEHICLE in channels else None,
         connectivity=moment.connectivity if Channel.CONNECTIVITY in channels else None,
         gps=moment.gps if Channel.GPS in channels else None,

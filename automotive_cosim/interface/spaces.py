@@ -9,6 +9,7 @@ Observation (``Dict``; a withheld channel has no key):
 | ``time_s`` | float64 () | simulated seconds since the hand-over |
 | ``feedback`` | ``code`` Discrete, ``text`` uint8 (1024,) | result of the last action |
 | ``screenshot`` | uint8 (height, width, 3) | RGB |
+| ``camera`` | uint8 (360, 640, 3) | RGB: the view through the windshield, if asked for |
 | ``elements`` | ``count``, ``bbox``, ``kind``, ``flags``, ``text``, ``description``, ``resource_id`` | 128 |
 | ``vehicle`` | one float32 or Discrete per field of ``VehicleState``, ``*_valid`` if it can be absent; ``aboard`` \
 uint8 (512,) | |
@@ -54,6 +55,8 @@ from automotive_cosim.contracts import (
 from automotive_cosim.errors import ActionError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.observe import Channel
+from automotive_cosim.view.lens import HEIGHT as VIEW_HEIGHT
+from automotive_cosim.view.lens import WIDTH as VIEW_WIDTH
 
 T = TypeVar("T")
 
@@ -109,6 +112,7 @@ def observation_space(channels: frozenset[Channel], width: int, height: int) -> 
             }
         ),
         Channel.CONTEXT: _bytes_space(CONTEXT_BYTES),
+        Channel.CAMERA: _bytes_space(VIEW_HEIGHT, VIEW_WIDTH, 3),
     }
     return spaces.Dict(
         {
@@ -212,6 +216,8 @@ def encode(observation: Observation, channels: frozenset[Channel]) -> dict[str, 
     }
     if Channel.SCREENSHOT in channels and observation.screenshot is not None:
         encoded["screenshot"] = observation.screenshot.copy()
+    if Channel.CAMERA in channels and observation.camera is not None:
+        encoded["camera"] = observation.camera.copy()
     if Channel.ELEMENTS in channels:
         encoded["elements"] = _encode_elements(observation.elements or ())
     if Channel.VEHICLE in channels and observation.vehicle is not None:
@@ -240,6 +246,7 @@ def decode(encoded: Mapping[str, Any]) -> Observation:
         feedback=Feedback(tuple(FeedbackCode)[int(feedback["code"])], _text(feedback["text"])),
         elements=_decode_elements(encoded["elements"]) if "elements" in encoded else None,
         screenshot=encoded.get("screenshot"),
+        camera=encoded.get("camera"),
         vehicle=_decode_vehicle(encoded["vehicle"]) if "vehicle" in encoded else None,
         connectivity=_decode_connectivity(encoded["connectivity"]) if "connectivity" in encoded else None,
         gps=_decode_gps(encoded["gps"]) if "gps" in encoded else None,

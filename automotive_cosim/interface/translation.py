@@ -14,8 +14,8 @@ from itertools import product
 from math import prod
 from typing import Any
 
-from automotive_cosim.cockpit.apps.phone.commands import CallEmergency
-from automotive_cosim.cockpit.apps.safety.commands import AskPullOver, AskSlowDown, WarnDriver
+from automotive_cosim.cockpit.apps.phone.commands import CALL_EMERGENCY
+from automotive_cosim.cockpit.apps.safety.commands import ASK_PULL_OVER, ASK_SLOW_DOWN, WarnDriver
 from automotive_cosim.cockpit.apps.safety.state import AlertDraft
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.cockpit.commands import Put, Set, SetAll
@@ -59,12 +59,12 @@ def actions_of(command: Command, state: State) -> tuple[Action, ...] | None:
                     speed_kmh=given.speed_kmh,
                 ),
             )
-        case AskSlowDown():
+        case _ if command == ASK_SLOW_DOWN:
             speed_kmh = state.of(AlertDraft).speed_kmh or state.signals[ADAS.LIMIT_SIGN]
             return None if speed_kmh is None else (Action(ActionType.REQUEST_SLOW_DOWN, speed_kmh=speed_kmh),)
-        case AskPullOver():
+        case _ if command == ASK_PULL_OVER:
             return (Action(ActionType.PULL_OVER),)
-        case CallEmergency():
+        case _ if command == CALL_EMERGENCY:
             return (Action(ActionType.EMERGENCY_CALL),)
     found = _tried(command, state)
     if found is not None:

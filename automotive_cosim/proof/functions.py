@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus
 from automotive_cosim.contracts.given import Interface, See
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.loop import Actor
+from automotive_cosim.episode.session import Actor
 from automotive_cosim.interface.functions import action_of, call_of
 from automotive_cosim.proof.hand_over import Ground, Played, finish
 

@@ -61,8 +61,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.episode.counterfactual import replayed
-from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.episode import Episode, replayed
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violations
 from automotive_cosim.geo.rules import Status

@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.loop import Actor, play
+from automotive_cosim.episode.session import Actor, play
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import ActionError, OutOfBudgetError

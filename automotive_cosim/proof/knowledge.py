@@ -16,7 +16,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from functools import lru_cache
 from typing import Any
 
-from automotive_cosim.cockpit.apps.climate.screens import SEAT_LEVELS
+from automotive_cosim.cockpit.apps.climate import SEAT_LEVELS
 from automotive_cosim.cockpit.apps.phone.person import PHOTO
 from automotive_cosim.cockpit.occupants import Seat, seated_by, told
 from automotive_cosim.cockpit.photos import Photo

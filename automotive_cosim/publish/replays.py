@@ -14,12 +14,12 @@ from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rerun import compare, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 

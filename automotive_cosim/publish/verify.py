@@ -33,12 +33,12 @@ from automotive_cosim.publish.episodes import check_trial
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.run.coverage import Coverage, coverage
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_evaluation, trace_file
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
 from automotive_cosim.traffic.fork import Simulations

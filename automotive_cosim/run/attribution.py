@@ -50,15 +50,14 @@ from automotive_cosim.drives.judge import BACK, EventOutcome, JudgedAct, Worth, 
 from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.session import DriveSession
-from automotive_cosim.episode.counterfactual import counterfactual
-from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.episode import Episode, counterfactual
 from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.run.harm import drive_figures
+from automotive_cosim.run.figures import drive_figures
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.rerun import Player, Recorded, compare, played, recorded
 from automotive_cosim.run.row import from_json
@@ -222,9 +221,7 @@ def read_effects(path: Path) -> list[ActEffect]:
     try:
         return [from_json(ActEffect, each) for each in read_json(path)["acts"]]
     except (OSError, ValueError, LookupError, TypeError) as error:
-        raise UserError(
-            f"{path} does not hold the effects of acts; `automotive-cosim attribute` measures them"
-        ) from error
+        raise UserError(f"{path} holds no effects of acts; `automotive-cosim attribute` measures them") from error
 
 
 @dataclass(slots=True)

@@ -24,7 +24,6 @@ from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run import worker
 from automotive_cosim.run.budget import MeterHandle, Spent
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Runner, Worker, failed
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue, SimulationKey
@@ -33,6 +32,7 @@ from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import RowKind, Store, cannot_write, opened
 from automotive_cosim.run.time_left import JobTurn, Pace
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})

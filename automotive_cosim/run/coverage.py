@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 
 

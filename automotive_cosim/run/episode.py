@@ -10,7 +10,6 @@ from automotive_cosim import geo
 from automotive_cosim.agents import Agent
 from automotive_cosim.contracts import Json
 from automotive_cosim.cosim.exposed import states_of, stretches
-from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer
@@ -19,19 +18,24 @@ from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.measures import exposure, following_figures
-from automotive_cosim.run.answers import Answers
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.estimates import PositionEstimate, estimates
-from automotive_cosim.run.harm import drive_figures, overspeed
-from automotive_cosim.run.jobs import TrialSetup
-from automotive_cosim.run.load import DriverLoad, driver_load
+from automotive_cosim.run.figures import (
+    DriverLoad,
+    alerts,
+    compliance,
+    drive_figures,
+    driver_load,
+    pixel_taps,
+    questioned,
+)
 from automotive_cosim.run.moments import Judged
+from automotive_cosim.run.observer import Answers
 from automotive_cosim.run.row import as_json
-from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import open_scenario
-from automotive_cosim.tasking.dialogue import Question
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.sets import Split
 from automotive_cosim.tasking.split import split_of
@@ -40,8 +44,6 @@ from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
-OVERSPEED_SCALE_MPS = 2.23
-"""Mean overspeed at which compliance is zero, 5 mph: nuPlan's speed-limit metric (``max_overspeed_value``)."""
 IN_RESULT = (
     "task", "half", "scenario", "agent", "model", "conditions", "seed", "traffic_seed", "success", "reward",
     "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in",
@@ -250,27 +252,3 @@ class EpisodeResult:
         of_the_row = as_json(row)
         told = asdict(self) | {"verdict": self.verdict and self.verdict.as_json()}
         return {name: of_the_row[name] for name in IN_RESULT} | told
-
-
-def compliance(moments: Sequence[Moment]) -> float | None:
-    """Speed-limit compliance: 1 without overspeed, 0 from a mean overspeed of 2.23 m/s.
-
-    Args:
-        moments: in order; the result is None if no limit binds in any of them, or no time passes.
-    """
-    over_m, whole_s = overspeed(moments)
-    return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
-
-
-def questioned(questions: Sequence[Question]) -> dict[str, Any]:
-    """The fields of a row about questions to the driver."""
-    return {
-        "questions": len(questions),
-        "unneeded_questions": sum(not question.is_needed for question in questions),
-        "question_s": sum(question.seconds for question in questions),
-    }
-
-
-def alerts(start: Moment, end: Moment) -> int:
-    """Alerts that the agent gave between two moments of its drive."""
-    return len(end.commands["alerts"]) - len(start.commands["alerts"])

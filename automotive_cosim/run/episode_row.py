@@ -6,9 +6,8 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
-from automotive_cosim.run.harm import DriveFigures
+from automotive_cosim.run.figures import DriveFigures, PixelTaps
 from automotive_cosim.run.row import InColumns
-from automotive_cosim.run.taps import PixelTaps
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Ability, Basis, Dimension, Module

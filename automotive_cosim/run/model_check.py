@@ -15,7 +15,7 @@ from automotive_cosim.errors import ActionError, ModelError
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN, ChatMessage, ChatModel, ModelReply, ToolCall
 from automotive_cosim.models.local import Local
 from automotive_cosim.run.forecast import asks, longest_question, pictures_of
-from automotive_cosim.run.jobs import TrialSetup
+from automotive_cosim.run.trial import TrialSetup
 
 FILLER = "The car drives on along the avenue, and nothing has changed since. "
 ASKED = "Answer with the word OK."

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
-from fnmatch import fnmatchcase
 from itertools import product
 from math import prod
 from pathlib import Path
@@ -27,13 +26,14 @@ from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
+from automotive_cosim.formats.words import matches
 from automotive_cosim.interface.trace import plain
 from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
+from automotive_cosim.run.trial import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task
@@ -318,7 +318,7 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
     there = [task for task in CATALOGUE.values() if suite in (ALL_SUITES, task.suite)]
     chosen: set[str] = set()
     for word in asked:
-        named = {task.id for task in there if fnmatchcase(task.id, word) or word in _words(task)}
+        named = {task.id for task in there if matches(task.id, word) or word in _words(task)}
         named |= {word, *(difficulty.shipped().core if word == difficulty.CORE else ())} & set(CATALOGUE)
         if not named:
             known = {difficulty.CORE, *CATALOGUE}.union(*map(_words, there))
@@ -338,7 +338,7 @@ def families_named(asked: Iterable[str]) -> tuple[str, ...]:
         named = {
             family.id
             for family in FAMILIES.values()
-            if word in ("all", family.scenario, family.season) or fnmatchcase(family.id, word)
+            if word in ("all", family.scenario, family.season) or matches(family.id, word)
         }
         if not named:
             raise UnknownNameError("family of drives", word, FAMILIES, "automotive-cosim show drives")

@@ -22,7 +22,7 @@ from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.contracts import KMH_PER_MPS, Json
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, screenshot
+from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, road_view, screenshot
 from automotive_cosim.formats.writing import (
     add_line,
     check_writable,
@@ -34,11 +34,11 @@ from automotive_cosim.formats.writing import (
 )
 from automotive_cosim.interface.trace import STATES, digests
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.moments import JudgeInput, write_judged
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import write_trace
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_folder import target
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import STAMPED, installed
@@ -173,6 +173,9 @@ class Recorder(TrialObserver):
             with drafted(screenshot(self.folder, step.number)) as file:
                 Image.fromarray(shot.screenshot).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
             self._pictured = step.number, shot.screenshot
+        if (camera := shot.session.observation.camera) is not None:
+            with drafted(road_view(self.folder, step.number)) as file:
+                Image.fromarray(camera).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
         told, begins = step.as_json(), "hand-over"
         if shot.session.observation.on_watch:
             told["context"], begins = shot.session.observation.context or "", "departure"  # as the agent was told

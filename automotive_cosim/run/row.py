@@ -83,18 +83,25 @@ def from_line(kind: type[R], line: bytes) -> R:
     try:
         return form.adapter.validate_json(line, strict=True)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        raise ValueError(f"{where}: {first['msg']}" if where else first["msg"]) from error
+        raise _first(error) from error
+
+
+def _first(error: ValidationError) -> ValueError:
+    first = error.errors(include_url=False)[0]
+    where = ".".join(map(str, first["loc"]))
+    return ValueError(f"{where}: {first['msg']}" if where else first["msg"])
 
 
 def from_json(kind: type[T], values: Json) -> T:
     """The dataclass from its JSON form; unknown keys are ignored.
 
     Raises:
-        ValueError: a field is missing or of another type.
+        ValueError: a field is missing or of another type; the message gives the first.
     """
-    return _form(kind).adapter.validate_python(values)
+    try:
+        return _form(kind).adapter.validate_python(values)
+    except ValidationError as error:
+        raise _first(error) from error
 
 
 def steady(row: JobRow) -> Json:

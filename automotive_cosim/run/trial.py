@@ -1,28 +1,244 @@
-"""Runs a trial: one spec goes in, a session runs, one row comes out.
+"""A trial by name, and its run: one spec goes in, a session runs, one row comes out.
 
-started -> reset, brief -> begun -> (act -> step -> stepped)* -> judged -> drive on -> row -> finished
+run_trial:  started -> reset, brief -> begun -> (act -> step -> stepped)* -> judged -> drive on -> row -> finished
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+import re
+from abc import abstractmethod
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from math import inf
+from pathlib import Path
+from typing import Annotated, Any
+
+from annotated_types import Ge, Gt, Le
 
 from automotive_cosim.agents import Agent, Learner, Privileged
-from automotive_cosim.contracts import Element
+from automotive_cosim.contracts import Element, Json
+from automotive_cosim.contracts.given import GeoInput
+from automotive_cosim.drives.specification import MOST_STEPS
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.judged import JudgedSession
-from automotive_cosim.episode.loop import play
-from automotive_cosim.episode.observer import Observers
+from automotive_cosim.episode.observer import Observer, Observers
+from automotive_cosim.episode.session import play
 from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import InfrastructureError
-from automotive_cosim.run.answers import Answers
-from automotive_cosim.run.jobs import TrialSetup
-from automotive_cosim.run.observer import Shot, TrialObserver
+from automotive_cosim.interface.trace import canonical
+from automotive_cosim.run.executor import Job
+from automotive_cosim.run.moments import JudgeInput
+from automotive_cosim.run.observer import Answers, Shot, TrialObserver
+from automotive_cosim.run.outside import EPISODE_S, STEP_S
 from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.tasking.sets import Split, Suite
 from automotive_cosim.traffic.fork import Simulations
+
+NO_MODEL = "none"
+WARM_UPS_S: Mapping[str, float] = {
+    "alpine_pass": 3.6, "autobahn": 4.2, "beauce": 2.2, "border": 2.0, "grid": 1.6, "gulf": 4.5, "london": 4.3,
+    "new_york": 3.8, "nordic": 2.9, "paris_centre": 7.4, "peripherique": 7.5, "sydney": 3.4, "tokyo": 7.2,
+}  # fmt: skip
+"""Processor seconds of loading and warming up each shipped scenario, with the process that does (November 2026)."""
+WARM_UP_S = 10.0
+"""The same of another scenario: an import of a town has more roads than most of these."""
+HUMAN = "human"
+"""The agent that is a person; a code name replaces the model."""
+
+
+def warm_up_s(scenario: str) -> float:
+    """Seconds of one worker on an idle machine for loading and warming up a scenario."""
+    return WARM_UPS_S.get(scenario, WARM_UP_S)
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Limits of one episode."""
+
+    steps: Annotated[int, Ge(1), Le(100_000)] = Suite.STANDARD.max_steps
+    """Number of actions, including unreadable ones."""
+    hard_steps: Annotated[int, Ge(1), Le(100_000)] = Suite.HARD.max_steps
+    """The same for the tasks of the hard suite."""
+    sim_s: Annotated[float, Gt(0)] = 600.0
+    """Simulated seconds from the hand-over, after which the episode is judged as it is."""
+    wall_s: Annotated[float, Gt(0)] = 900.0
+    """Wall seconds of all but the agent and its model, warm-up included; exceeding them is an infrastructure
+    error."""
+    agent_s: Annotated[float, Gt(0)] = EPISODE_S
+    """Wall seconds that the agent's process may take; exceeding them is a failure of the agent."""
+    agent_step_s: Annotated[float, Gt(0)] = STEP_S
+    """The same for one step."""
+    model_s: Annotated[float, Gt(0)] = 1800.0
+    """Wall seconds to wait for the model in all, after which the episode is judged as it is."""
+    tokens: Annotated[int, Ge(1)] = 2_000_000
+    """Tokens to and from the model, after which the episode is judged as it is."""
+    drive_steps: Annotated[int, Ge(1), Le(MOST_STEPS)] = MOST_STEPS
+    """``steps`` of a drive, waits among them."""
+    drive_wall_s: Annotated[float, Gt(0)] = 7200.0
+    """``wall_s`` of a drive, which lasts ten to thirty simulated minutes."""
+    drive_agent_s: Annotated[float, Gt(0)] = 7200.0
+    """``agent_s`` of a drive."""
+    drive_model_s: Annotated[float, Gt(0)] = 14_400.0
+    """``model_s`` of a drive: a slow model is asked hundreds of times, for up to a minute each."""
+    drive_tokens: Annotated[int, Ge(1)] = 20_000_000
+    """``tokens`` of a drive."""
+
+    @property
+    def of_drives(self) -> Limits:
+        """The limits of a drive, which goes on unwatched when one of them is reached; its time ends with it."""
+        return replace(
+            self,
+            steps=self.drive_steps,
+            wall_s=self.drive_wall_s,
+            agent_s=self.drive_agent_s,
+            model_s=self.drive_model_s,
+            tokens=self.drive_tokens,
+        )
+
+    def within(self, tokens: int | None = None, model_s: float | None = None) -> Limits:
+        """The same with another budget for the model; None keeps what there is."""
+        return replace(
+            self,
+            tokens=self.tokens if tokens is None else tokens,
+            model_s=self.model_s if model_s is None else float(model_s),
+        )
+
+    @property
+    def longest_s(self) -> float:
+        """Wall seconds of everything."""
+        return self.wall_s + self.agent_s + self.model_s
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrialSetup(Job):
+    """What one agent does once, by name: on a task's half (``EpisodeSetup``) or on a drive (``DriveSetup``).
+
+    The same trial gives the same trace.
+    """
+
+    agent: str = ""
+    model: str = NO_MODEL
+    repeat: int = 0
+    """Which run of the same it is."""
+    limits: Limits = field(default_factory=Limits)
+
+    @property
+    @abstractmethod
+    def seed(self) -> int:
+        """Seed of the traffic, and of everything that is drawn."""
+
+    @property
+    @abstractmethod
+    def conditions(self) -> Conditions:
+        """What the agent is given, and at what speed."""
+
+    @property
+    def asked_model(self) -> str:
+        """The model, as given to ``make_agent``."""
+        return "rules" if self.model == NO_MODEL else self.model
+
+    @property
+    @abstractmethod
+    def in_scenario(self) -> str:
+        """Name or folder of the scenario that it runs in."""
+
+    @property
+    @abstractmethod
+    def about(self) -> Json:
+        """What is run, by name, as the file of its road tells it."""
+
+    @property
+    @abstractmethod
+    def split(self) -> Split:
+        """The public set that it belongs to."""
+
+    @property
+    @abstractmethod
+    def instance(self) -> tuple[Hashable, ...]:
+        """What an instance is identified by; the same for every contestant."""
+
+    @abstractmethod
+    def planned(self) -> TrialRow:
+        """Its row, as far as it is known before it runs."""
+
+    @abstractmethod
+    def started(self, simulations: Simulations, agent: Agent, observer: Observer) -> JudgedSession:
+        """Its session, at the instant at which the agent takes over; whoever asks for it closes it.
+
+        Raises:
+            UserError: something in it does not exist.
+            InfrastructureError: the situation did not arise, or the road failed.
+        """
+
+    @abstractmethod
+    def row(self, session: Any, end: End, answers: Answers) -> TrialRow:
+        """Its row, once it is over; ``session`` is None if the agent never took over."""
+
+    @abstractmethod
+    def told(self, session: Any) -> Any:
+        """What the end of its trace tells besides the row; None if there is nothing to tell."""
+
+    @abstractmethod
+    def lines(self, session: Any, row: TrialRow, told: Any, thoughts: Sequence[Json]) -> list[Json]:
+        """Its trace: the steps, each with what the agent thought, then the result."""
+
+    @abstractmethod
+    def judged(self, session: Any) -> JudgeInput | None:
+        """The judge's input; None without a judgement."""
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """The warm simulation that it starts from: scenario and seed."""
+        return self.in_scenario, self.seed
+
+    @property
+    def warm_up_weight(self) -> float:
+        """How long the warm-up of its simulation takes, as a share of that of a large town."""
+        return warm_up_s(self.in_scenario) / WARM_UP_S
+
+    @property
+    def wall_s(self) -> float:
+        """Limit of its wall time."""
+        return self.limits.longest_s
+
+    @property
+    def named(self) -> Json:
+        """What its row says of it before it runs, whatever its kind."""
+        names = ("id", "agent", "model", "conditions", "seed", "repeat", "split")
+        return {"scenario": self.in_scenario} | {name: getattr(self, name) for name in names}
+
+    def id_of(self, *what: str, rest: Iterable[str]) -> str:
+        """A file name from what is run, by whom and how: readable words, then a digest of everything.
+
+        Args:
+            what: what is run, which comes first.
+            rest: what distinguishes it besides agent, model, seed, repeat and conditions.
+        """
+        conditions = self.conditions
+        others = replace(conditions, geo=GeoInput.FULL).tags
+        return file_name(
+            (*what, self.agent, self.model, conditions.geo, f"s{self.seed}", f"r{self.repeat}", *rest, *others)
+        )
+
+
+def file_name(exactly: Iterable[str]) -> str:
+    """Readable words, then a digest of everything."""
+    exactly = tuple(exactly)
+    return f"{'-'.join(map(_readable, exactly))[:150]}-{digest(exactly)[:8]}"
+
+
+@lru_cache(4096)
+def _readable(word: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name)
+
+
+def digest(value: object) -> str:
+    """A digest of plain values."""
+    return hashlib.sha256(canonical(value)).hexdigest()
 
 
 def run_trial(

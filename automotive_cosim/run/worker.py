@@ -14,14 +14,13 @@ from automotive_cosim.formats.writing import beneath
 from automotive_cosim.run.budget import Metered, MeterHandle
 from automotive_cosim.run.executor import Runner, failed_by
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import Limits, TrialSetup
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.stage import StageObserver
-from automotive_cosim.run.trial import run_trial
+from automotive_cosim.run.trial import Limits, TrialSetup, run_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 

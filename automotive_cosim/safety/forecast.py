@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.forecast import CostForecast, Range, forecast
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import Plan
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.safety.samplers import make_sampler
 from automotive_cosim.safety.space import Space
 from automotive_cosim.safety.trying import job_of, trial_of

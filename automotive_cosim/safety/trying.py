@@ -16,12 +16,12 @@ from automotive_cosim.formats.toml import dotted
 from automotive_cosim.run import worker
 from automotive_cosim.run.batch import FINAL_KINDS, Progress, note_spent, run_jobs, spent_before
 from automotive_cosim.run.executor import Executor, Runner
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import Plan, PlannedTrial
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import Store, opened, replan
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of

@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.errors import AgentError, UserError
 from automotive_cosim.interface.observe import ALL
-from automotive_cosim.run.jobs import HUMAN, NO_MODEL
+from automotive_cosim.run.trial import HUMAN, NO_MODEL
 
 TICK_S = 1.0
 """Time that an act takes."""

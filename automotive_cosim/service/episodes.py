@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any, Protocol
 
 from automotive_cosim.cockpit.actions import check, parse
@@ -19,7 +19,7 @@ from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.specification import End, EpisodeSpec
 from automotive_cosim.errors import ActionError, InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.service.turn import EpisodeTurn, Outcome
+from automotive_cosim.service.turn import EpisodeTurn
 from automotive_cosim.traffic.fork import Simulations
 
 SWEEP_S = 10.0
@@ -42,19 +42,6 @@ class ServiceLimits:
             )
 
 
-class AnyOutcome(Protocol):
-    """The result of an episode that is over."""
-
-    @property
-    def trace_sha256(self) -> str:
-        """Hash of all steps: equal for the same specification and actions, whoever sent them."""
-        ...
-
-    def as_json(self) -> Json:
-        """It as a JSON object."""
-        ...
-
-
 class Startable(Protocol):
     """What the service can run."""
 
@@ -62,7 +49,7 @@ class Startable(Protocol):
         """The session, which the service closes."""
         ...
 
-    def outcome(self, episode_id: str, session: Any) -> AnyOutcome:
+    def outcome(self, session: Any) -> Json:
         """What came of the session that ``begin`` returned, once it is over."""
         ...
 
@@ -78,21 +65,18 @@ class _OnTask:
         episode.observer = Observer()  # told of the way to the hand-over alone
         return episode
 
-    def outcome(self, episode_id: str, session: Episode) -> Outcome:
-        assert session.verdict is not None
-        return Outcome(
-            episode_id,
-            self.spec.task,
-            self.spec.half,
-            self.spec.seed,
-            str(session.end),
-            session.verdict.success,
-            len(session.steps) - 1,
-            round(session.seconds, 3),
-            session.trace_sha256,
-            session.verdict,
-            session.breaches,
-        )
+    def outcome(self, session: Episode) -> Json:
+        verdict = session.verdict
+        assert verdict is not None
+        return {
+            "task": self.spec.task,
+            "half": self.spec.half,
+            "seed": self.spec.seed,
+            "success": verdict.success,
+            "steps": len(session.steps) - 1,
+            "verdict": verdict.as_json(),
+            "breaches": [asdict(each) for each in session.breaches],
+        }
 
 
 @dataclass(slots=True)
@@ -185,10 +169,15 @@ class EpisodeService:
                 episode.step(known)
             return _turn(episode_id, episode)
 
-    def finish(self, episode_id: str) -> AnyOutcome:
+    def finish(self, episode_id: str) -> Json:
         """Judges the episode and closes it. One that is not over is cut off and judged as it is.
 
         The rest of a drive that is cut off is driven without the agent.
+
+        Returns:
+            What came of it, as a JSON object: ``end``, ``sim_seconds`` since its beginning, ``trace_sha256`` (equal
+            for the same specification and actions, whoever sent them); of a task ``success``, ``steps`` and the
+            ``verdict``, of a drive its ``result``.
 
         Raises:
             UserError: there is no such episode.
@@ -198,9 +187,14 @@ class EpisodeService:
             episode = running.episode
             if episode.end is None:
                 episode.cut_off(End.OUT_OF_BUDGET)
-            outcome = running.spec.outcome(episode_id, episode)
+            outcome = running.spec.outcome(episode)
             self._drop(episode_id)
-            return outcome
+            return outcome | {
+                "episode_id": episode_id,
+                "end": str(episode.end),
+                "sim_seconds": round(episode.seconds, 3),
+                "trace_sha256": episode.trace_sha256,
+            }
 
     def expire(self) -> None:
         """Closes the episodes that have been idle for too long; called regularly."""

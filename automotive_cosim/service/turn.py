@@ -1,17 +1,15 @@
-"""What an agent is told: a turn after each step, the outcome at the end."""
+"""What an agent is told after each step."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
-from automotive_cosim.agents.marks import listed, png
+from automotive_cosim.agents.marks import listed, png, road
 from automotive_cosim.agents.prompt import listing
 from automotive_cosim.cockpit.restrictions import in_words
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.trace import plain
-from automotive_cosim.tasking.policy import Breach
-from automotive_cosim.tasking.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +28,11 @@ class EpisodeTurn:
         """The screen as a PNG file; None for an agent that is not given it."""
         screenshot = self.observation.screenshot
         return None if screenshot is None else png(screenshot)
+
+    @property
+    def pictures(self) -> tuple[bytes, ...]:
+        """The screen and the view through the windshield, as far as the agent is given them."""
+        return (*([] if self.picture is None else [self.picture]), *road(self.observation))
 
     def as_json(self) -> Json:
         """The turn as a JSON object, without the picture.
@@ -63,28 +66,3 @@ class EpisodeTurn:
         if seen.policy is not None and self.step == 0:
             told["policy"] = seen.policy
         return told
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """The result of an episode that is over."""
-
-    episode_id: str
-    task: str
-    half: str
-    seed: int
-    end: str
-    success: bool
-    steps: int
-    """Number of actions, unreadable ones included."""
-    sim_seconds: float
-    """Simulated seconds from the hand-over to the end."""
-    trace_sha256: str
-    """Hash of all steps: equal for the same specification and actions, whoever sent them."""
-    verdict: Verdict
-    breaches: tuple[Breach, ...] = ()
-    """What the agent did against the house rules, told or not."""
-
-    def as_json(self) -> Json:
-        """The outcome as a JSON object."""
-        return asdict(self) | {"verdict": self.verdict.as_json()}

@@ -122,6 +122,12 @@ class Incidents:
         going_on = (entry.staged for entry in self._entries if entry.has_begun and not entry.is_over)
         return tuple(seen for one in going_on if (seen := one.reported(slow)) is not None)
 
+    @property
+    def closed(self) -> tuple[str, ...]:
+        """Lanes that are closed to cars now."""
+        going_on = (entry.staged.closed for entry in self._entries if entry.has_begun and not entry.is_over)
+        return tuple(lane for lanes in going_on for lane in lanes)
+
     def _ego_has_left(self) -> bool:
         """Whether the ego has arrived or was removed, while others drive on: nothing happens around it any more."""
         return self._stage.sensor is not None and self._stage.ego_id not in self._stage.sumo.vehicle_ids()

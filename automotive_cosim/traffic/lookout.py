@@ -6,9 +6,10 @@ ends at once: reading the position of each vehicle in a town takes several times
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 
-from automotive_cosim.contracts import LaneShape, RoadShapes, RoadSnapshot
+from automotive_cosim.contracts import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle
 from automotive_cosim.traffic.records import make_seen
 from automotive_cosim.traffic.sumo import LibSumo
 
@@ -46,7 +47,18 @@ class Lookout:
         if self._lights is None:
             self._lights = sumo.light_ids()
         state = sumo.light_state
-        return RoadSnapshot(sumo.time(), vehicles, tuple((light, state(light)) for light in self._lights))
+        lights = tuple((light, state(light)) for light in self._lights)
+        people = tuple(self._people(sumo.position(self._vehicle) if vehicles else ()))
+        return RoadSnapshot(sumo.time(), vehicles, lights, people)
+
+    def _people(self, here: Sequence[float]) -> Iterator[SeenVehicle]:
+        """Who walks in sight of a place."""
+        person = self._sumo.person
+        for name in person.getIDList() if here else ():
+            x_m, y_m = person.getPosition(name)
+            if not person.getVehicle(name) and math.dist((x_m, y_m), here) <= LOOK_RADIUS_M:
+                size = self._size(person.getTypeID(name))
+                yield make_seen(name, *size, x_m, y_m, person.getAngle(name), person.getSpeed(name), 0)
 
     def _size(self, kind: str) -> Size:
         size = self._sizes.get(kind)

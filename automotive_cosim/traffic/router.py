@@ -5,8 +5,7 @@ not. If too few vehicles were seen, it is free flow plus, at a signal, the mean 
 of the routes offered are those of the quickest lane that leads on: a queue to turn left does not delay the others.
 
 The times that SUMO's router uses persist and apply to every vehicle, so they are written for a time that no
-simulation reaches, and the router is queried for a departure then. The query uses the ego's type: its speed does
-not deviate, so no random number is drawn either.
+simulation reaches, and the router is queried for a departure then.
 """
 
 from __future__ import annotations

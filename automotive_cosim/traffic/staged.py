@@ -14,6 +14,9 @@ CAR_SPACE_M = 7.5
 class StagedIncident:
     """An incident in SUMO; most do nothing while they last, and need no reverting."""
 
+    closed: tuple[str, ...] = ()
+    """Lanes that it keeps cars out of while it lasts."""
+
     def begin(self) -> str:
         """Starts it; returns a description of what happened, or an empty text."""
         return ""

@@ -79,9 +79,9 @@ class _Roadworks(StagedIncident):
 
     def __init__(self, stage: IncidentStage, incident: incidents.Roadworks) -> None:
         self._stage, self._incident = stage, incident
-        self._closed = tuple(stage.lane(incident.edge, lane) for lane in incident.closed_lanes)
+        self.closed = tuple(stage.lane(incident.edge, lane) for lane in incident.closed_lanes)
         stage.signs.refuse_if_fixed(incident.edge)
-        if len(set(self._closed)) >= len(stage.edge(incident.edge).lane_ids):
+        if len(set(self.closed)) >= len(stage.edge(incident.edge).lane_ids):
             raise ScenarioError(
                 f"[[incidents]]: roadworks on {incident.edge!r} leave no lane; use kind = 'closure'"
             )
@@ -89,10 +89,10 @@ class _Roadworks(StagedIncident):
     def begin(self) -> str:
         stage = self._stage
         stage.signs.put_up(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
-        self._allowed = {lane: stage.sumo.lane.getAllowed(lane) for lane in self._closed}
-        for lane in self._closed:
+        self._allowed = {lane: stage.sumo.lane.getAllowed(lane) for lane in self.closed}
+        for lane in self.closed:
             stage.sumo.lane.setAllowed(lane, AUTHORITY)
-        if self._closed:
+        if self.closed:
             stage.detours.close(self._incident.edge, lanes_only=True)
             for vehicle in stage.sumo.vehicle_ids():
                 if vehicle != stage.ego_id:
@@ -104,7 +104,7 @@ class _Roadworks(StagedIncident):
         self._stage.signs.take_down(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
         for lane, allowed in self._allowed.items():
             self._stage.sumo.lane.setAllowed(lane, allowed)
-        if self._closed:
+        if self.closed:
             self._stage.detours.open(self._incident.edge, lanes_only=True)
         return ""
 
@@ -168,6 +168,7 @@ class _Closure(StagedIncident):
     def __init__(self, stage: IncidentStage, incident: incidents.Closure) -> None:
         self._stage = stage
         self._edge = stage.edge(incident.edge)
+        self.closed = tuple(self._edge.lane_ids)
 
     @property
     def _called(self) -> str:
@@ -342,6 +343,7 @@ class _Ahead(StagedIncident):
         if chosen is None:
             return ""
         self._staged = staged(self._stage, chosen)
+        self.closed = self._staged.closed
         return self._staged.begin()
 
     def end(self) -> str:

@@ -80,10 +80,12 @@ def unpack_advance(packed: Packed) -> Advance:
 
 def pack_snapshot(snapshot: RoadSnapshot) -> Packed:
     """A snapshot as nested tuples."""
-    return snapshot.time_s, tuple(map(_SEEN, snapshot.vehicles)), snapshot.lights
+    seen, people = (tuple(map(_SEEN, each)) for each in (snapshot.vehicles, snapshot.people))
+    return snapshot.time_s, seen, snapshot.lights, people, snapshot.closed
 
 
 def unpack_snapshot(packed: Packed) -> RoadSnapshot:
     """The snapshot that was packed."""
-    time_s, vehicles, lights = packed
-    return RoadSnapshot(time_s, tuple(make_seen(*vehicle) for vehicle in vehicles), lights)
+    time_s, vehicles, lights, people, closed = packed
+    seen, walking = (tuple(make_seen(*each) for each in group) for group in (vehicles, people))
+    return RoadSnapshot(time_s, seen, lights, walking, closed)

@@ -52,6 +52,7 @@ from automotive_cosim.traffic.sumo import (
     load_library,
     start,
 )
+from automotive_cosim.traffic.vocabulary import DEVICES
 
 NOT_LIKE_CARS = frozenset(("bicycle", "scooter", "moped", "wheelchair", "bus", "tram", "rail_urban"))
 """SUMO's classes of vehicles whose speed tells nothing of the cars': slower ones that are passed, and those that go
@@ -111,7 +112,8 @@ class World:
         self._sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
         self._sumo.type.setVehicleClass(SEARCHING_TYPE, "passenger")
         self._sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
-        self._sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
+        for device in sorted(DEVICES):
+            self._sumo.type.setParameter(SEARCHING_TYPE, f"has.{device}.device", "false")
         drawn = self._configuration.distributions
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE), drawn)
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
@@ -121,7 +123,7 @@ class World:
             lambda: self._sumo.on_lanes(self._not_like_cars, self._wants, self._stopping),
             self._free(),
         )
-        self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
+        self._router = Router(self._sumo, self.network, self.congestion, SEARCHING_TYPE)
         self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO, variable), scenario)
         self._has_incidents = self._incidents.are_left
         self._takes_any_route = takes_any_route(self._configuration, self.network)
@@ -280,6 +282,10 @@ class World:
         """
         self._incidents.add(incident)
         self._has_incidents = True
+
+    def closed(self) -> tuple[str, ...]:
+        """See ``Incidents.closed``."""
+        return self._incidents.closed
 
     def slowed(self) -> dict[str, float]:
         """Edges with another limit than the scenario has there now, and that limit as a share of it."""
@@ -461,7 +467,7 @@ class _EgoRoad:
         return self._pedals.alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        return self._lookout.look()
+        return replace(self._lookout.look(), closed=self._world.closed())
 
     def shapes(self) -> RoadShapes:
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)

@@ -18,6 +18,7 @@ import uvicorn
 from openenv.core.env_server import Action, Environment, Observation, State, create_app
 from pydantic import Field
 
+from automotive_cosim.agents.marks import road
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.guard import Guarded
@@ -54,6 +55,7 @@ class CarObservation(Observation):
 
     turn: dict[str, Any] = Field(description="The driver's words, elements, readings, place, and the last result.")
     picture: str | None = Field(None, description="The screen: a PNG in base64; null for who is not given it.")
+    camera: str | None = Field(None, description="The view through the windshield, likewise, with see = camera.")
     functions: list[dict[str, Any]] | None = Field(None, description="At the beginning, what can be called.")
     outcome: dict[str, Any] | None = Field(None, description="Verdict and trace_sha256; null before the end.")
 
@@ -101,7 +103,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, State]):
         self._state.step_count = turn.step
         if turn.end is None:
             return _observation(turn)
-        outcome = self._service.finish(self._under_way).as_json()
+        outcome = self._service.finish(self._under_way)
         self._under_way = None
         return _observation(turn, outcome)
 
@@ -133,6 +135,7 @@ def _observation(
         reward=None if outcome is None else reward_of(outcome),
         turn={name: value for name, value in turn.as_json().items() if name != "episode_id"},
         picture=None if turn.picture is None else base64.b64encode(turn.picture).decode(),
+        camera=next((base64.b64encode(each).decode() for each in road(turn.observation)), None),
         functions=functions,
         outcome=outcome,
     )

@@ -22,7 +22,7 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, SetupError, UserError
 from automotive_cosim.interface.functions import as_openai, functions, offered
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.models.base import DEAREST_USD, IN_PER_S, OUT_PER_S
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.fork_server import ForkServer
@@ -402,7 +402,7 @@ def test_an_address_without_an_agent_is_an_error_of_the_user(serve: Serve, card:
 
 def test_it_gets_no_picture_and_is_refused_where_it_would_see_nothing(serve: Serve) -> None:
     agent = make_agent(PREFIX + serve(answering()).address)
-    assert frozenset(Channel) - agent.channels == {Channel.SCREENSHOT}
+    assert ALL - agent.channels == {Channel.SCREENSHOT}
     with pytest.raises(UserError, match="see tree"):
         SessionSetup(agent.channels, Conditions.named({"see": "picture"}))
 

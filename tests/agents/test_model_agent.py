@@ -12,7 +12,7 @@ from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCod
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError, UserError
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.observe import Channel, See
+from automotive_cosim.interface.observe import ALL, Channel, See
 from automotive_cosim.models import ChatMessage, ModelReply
 
 COUNTRY = "Place: Beauce, France\nSpeed limit here: 80 km/h (posted on D 24)"
@@ -200,7 +200,7 @@ def test_the_rule_models_m3a_does_what_its_t3a_does(seen):
 )
 def test_switches_take_channels_away(settings, lost):
     made = make_agent("asurada", settings=AgentSettings(**settings))
-    assert frozenset(Channel) - made.channels == lost
+    assert ALL - made.channels == lost
 
 
 def test_memory_is_off_unless_it_is_given_a_file(agent, observation, tmp_path):

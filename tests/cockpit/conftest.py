@@ -11,9 +11,9 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit.apps.memo import Record
+from automotive_cosim.cockpit.apps.memo import RECORD
 from automotive_cosim.cockpit.apps.store import Installed
-from automotive_cosim.cockpit.apps.timer import StartTimer
+from automotive_cosim.cockpit.apps.timer import START_TIMER
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.messages import Focus, Pick, Show
@@ -160,11 +160,11 @@ def _leads_to(widget: Widget, here: Cockpit) -> str:
             return screen
         case Put(Installed(names)) if not more and set(names) > set(installed):
             return f"store with {next(name for name in names if name not in installed)}"
-        case Record() if here.commands()["apps.recording"]:
+        case _ if widget.on_tap == RECORD and here.commands()["apps.recording"]:
             return "memo with a memo"
-        case Record() if not here.commands()["apps.memos"]:
+        case _ if widget.on_tap == RECORD and not here.commands()["apps.memos"]:
             return "memo recording"
-        case StartTimer():
+        case _ if widget.on_tap == START_TIMER:
             return "timer running"
         case Set(signal, value) if signal is MEDIA.SOURCE:
             return f"media from {value}"

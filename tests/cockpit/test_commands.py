@@ -32,7 +32,7 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
-from automotive_cosim.episode.counterfactual import counterfactual, replayed
+from automotive_cosim.episode.episode import counterfactual, replayed
 
 from .conftest import View, middle, outside
 

@@ -34,7 +34,7 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watchers import READS, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.episode.loop import Actor, play
+from automotive_cosim.episode.session import Actor, play
 from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.spaces import GOAL_BYTES

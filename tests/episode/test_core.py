@@ -13,9 +13,8 @@ from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCo
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.session import Session
+from automotive_cosim.episode.session import Session, play
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, NoRoomError, OutOfBudgetError

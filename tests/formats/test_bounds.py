@@ -28,6 +28,7 @@ from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import extract
 from automotive_cosim.publish import archive
 from automotive_cosim.report.playback import open_picture
+from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.run.road import read_road
 from automotive_cosim.tasking.catalogue import Catalogue
 
@@ -115,6 +116,10 @@ def own_tasks(path: Path) -> None:
     Catalogue().add_folder(path.parent)
 
 
+def planned(path: Path) -> None:
+    make_plan(read_plan(path)).jobs()
+
+
 def scanned(path: Path) -> None:
     scan(path, lambda name, attributes, line: None, error=UserError)
 
@@ -152,6 +157,14 @@ MANY, DEAR_TOLD = "too many", "more memory or processor time"
 HEAD = '{"format":1}\n'
 BAD = (
     Over("TOML", "p.toml", ("TEXT_BYTES", 10), text_of("a = 'xxxxxx'\n"), read_toml, "larger than"),
+    Over(
+        "patterns",
+        "p.toml",
+        ("PATTERN", 5),
+        text_of("agents = ['oracle']\ntasks = ['hvac_*']"),
+        planned,
+        "no task, pattern",
+    ),
     Over(
         TASKS,
         "p.toml",

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.run.forecast import asks, expected, forecast
-from automotive_cosim.run.jobs import WARM_UP_S, WARM_UPS_S
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.settings import Budget
+from automotive_cosim.run.trial import WARM_UP_S, WARM_UPS_S
 from automotive_cosim.scenarios import shipped
 
 PRICED = "nowhere/m?usd_per_million_in=2&usd_per_million_out=8"

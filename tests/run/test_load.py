@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Element
-from automotive_cosim.run.load import NOTICE, driver_load, reading_s
+from automotive_cosim.run.figures import NOTICE, driver_load, reading_s
 
 
 def step(time_s: float, action: ActionType | None = None, said: str = "", speed_mps: float = 10.0) -> Any:

@@ -5,8 +5,8 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.run.jobs import Limits
 from automotive_cosim.run.plan import choose, make_plan, read_plan
+from automotive_cosim.run.trial import Limits
 from automotive_cosim.tasking.sets import Split, Suite
 from automotive_cosim.tasking.split import split_of
 from automotive_cosim.tasking.task import Subset

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Element
-from automotive_cosim.run.taps import PixelTaps, margin_px, pixel_taps
+from automotive_cosim.run.figures import PixelTaps, margin_px, pixel_taps
 
 BOX = BoundingBox(100, 100, 140, 120)
 

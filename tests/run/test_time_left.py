@@ -15,10 +15,10 @@ from automotive_cosim.cli.batches import time_left
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.budget import Spent
-from automotive_cosim.run.jobs import WARM_UP_S, WARM_UPS_S
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage
+from automotive_cosim.run.trial import WARM_UP_S, WARM_UPS_S
 
 OUT_OF_REACH = "TriggerNotReachedError"
 

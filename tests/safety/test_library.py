@@ -11,7 +11,7 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.jobs import Limits
+from automotive_cosim.run.trial import Limits
 from automotive_cosim.safety.space import LIBRARY, FactorChoices, FactorRange, read_space, space_file
 from automotive_cosim.safety.trying import trial_of
 from tests.laws import over

@@ -12,10 +12,10 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.trivial import AlwaysAlert
 from automotive_cosim.contracts import Json
 from automotive_cosim.report.results import read_results
-from automotive_cosim.run.jobs import TrialSetup
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.settings import Pictures
+from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import run_with
 from automotive_cosim.safety.budget import SearchBudget

@@ -137,7 +137,8 @@ def write_drive(folder: Path) -> Path:
         for kind, alike, outcome in (("limit", False, "hit"), ("rain", False, "missed"), ("dusk", True, "avoided"))
     ]  # fmt: skip
     acts = [{"time_s": 3.0, "words": "warns of speed", "worth": "right"}]
-    row = {"family": "grid_june", "scenario": "grid", "agent": "rule-perfect", "model": "none", "seed": 0,
+    row = {"id": "one", "season": "summer", "family": "grid_june", "scenario": "grid",
+           "agent": "rule-perfect", "model": "none", "seed": 0,
            "value": 50.0, "events": events, "acts": acts, "end": "minutes_over"}  # fmt: skip
     told = {"row": row, "result": {"timeline": {}}, "manifest": {"setup": {"family": "grid_june", "seed": 0}}}
     (folder / "trial.json").write_text(json.dumps(told), encoding="utf-8")

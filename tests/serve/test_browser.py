@@ -412,7 +412,7 @@ def test_a_drive_is_replayed_with_its_events_on_the_slider(
     page.get_by_role("link", name="grid_june").click()
     expect(page.locator(".pill")).to_have_text("Score 50 · 1 of 2 events met")
     expect(page.locator(".marks .span")).to_have_count(3)
-    page.get_by_role("button", name="event limit").click()
+    page.get_by_role("button", name="limit: limit").click()
     expect(page.locator(".clock")).to_have_text("+1 s")
     page.get_by_role("button", name="deadline of limit").click()
     expect(page.locator(".clock")).to_have_text("+5 s")
@@ -468,7 +468,7 @@ def test_a_running_study_is_watched_drive_after_drive(
             mark_as_written(lock)
             with (write_live_drive(study, "second") / "road.jsonl.gz").open("ab") as second:
                 mark_as_written(second)
-                expect(page.get_by_text("This is drive second.")).to_be_visible()
+                expect(page.get_by_text("Showing drive second")).to_be_visible()
     expect(page.get_by_text("The study is not running.")).to_be_visible()
     page.get_by_role("link", name="See its decisions").click()
     expect(page.locator("tbody tr")).to_have_count(2)

@@ -105,7 +105,8 @@ def _side(folder: Path, given: Configuration) -> Side:
 
 
 def made(folder: Path, end_s: int = 360) -> Path:
-    """A network with every class of vehicle, sublanes, people on foot, and a flow that only ``end`` spaces out."""
+    """A network with every class of vehicle, sublanes, people on foot, devices that are drawn, and a flow that only
+    ``end`` spaces out."""
     grid = "--grid --grid.number 4 --grid.length 180 -L 2 --sidewalks.guess --crossings.guess --bikelanes.guess"
     assert run("netgenerate", [*grid.split(), "--no-turnarounds", "--tls.guess", "-o", "made.net.xml"], folder)[0]
     types = "".join(f'<vType id="{each}" vClass="{each}"/>' for each in CLASSES)
@@ -124,6 +125,7 @@ def made(folder: Path, end_s: int = 360) -> Path:
         '<configuration><net-file value="made.net.xml"/><route-files value="made.rou.xml"/>'
         f'<end value="{end_s}"/>'
         '<step-length value="0.5"/><lateral-resolution value="0.8"/>'
+        '<device.friction.probability value="0.3"/><device.driverstate.probability value="0.2"/>'
         '<device.rerouting.probability value="0.4"/><device.rerouting.period value="30"/></configuration>'
     )
     return folder / "made.sumocfg"

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.session import play
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.proof.prover import GATES, Prover

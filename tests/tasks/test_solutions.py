@@ -17,7 +17,7 @@ from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.signals import ACTUATORS, HMI, difference, named
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import ActionType, Answer, Feedback, FeedbackCode, Observation, RoadNetwork
-from automotive_cosim.episode.counterfactual import counterfactual
+from automotive_cosim.episode.episode import counterfactual
 from automotive_cosim.episode.situation import PARKED
 from automotive_cosim.proof.mutations import another_value
 from automotive_cosim.tasking.instance import Instance, draw

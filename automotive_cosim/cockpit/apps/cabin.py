@@ -111,10 +111,4 @@ def _forecast(state: State) -> Block:
     )
 
 
-APP = App(
-    name="cabin",
-    title=say("Cabin"),
-    icon=Icon.CONTACTS,
-    order=17,
-    pages={"cabin": AppPage(cabin)},
-)
+APP = App(name="cabin", title=say("Cabin"), icon=Icon.CONTACTS, order=17, pages={"cabin": AppPage(cabin)})

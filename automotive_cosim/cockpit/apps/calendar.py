@@ -189,9 +189,6 @@ def _index(state: State, name: str) -> int | Feedback:
     return unknown("appointment", name, (entry.name for entry in entries))
 
 
-FUNCTIONS = (move_appointment, remove_appointment)
-
-
 APP = App(
     name="calendar",
     title=say("Calendar"),
@@ -199,7 +196,7 @@ APP = App(
     order=16,
     where=Where.STORE,
     about=say("Today's appointments and how to get there"),
-    functions=FUNCTIONS,
+    functions=(move_appointment, remove_appointment),
     pages={"calendar": AppPage(calendar, Room.ONE), "appointment": AppPage(appointment, Room.ONE)},
     preinstalled=False,
     starts=lambda state, rng: (agenda(rng, state.of(Gazetteer)),),

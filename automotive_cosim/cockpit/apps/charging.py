@@ -30,7 +30,6 @@ class ChargingSchedule(AppData):
     timer: Timer = AT_SEVEN
 
     def commands(self) -> dict[str, Any]:
-        """The time; empty without."""
         return {"charging.schedule": self.timer.shown if self.timer.on else ""}
 
 
@@ -101,9 +100,6 @@ def schedule_charging(
     )
 
 
-FUNCTIONS = (schedule_charging,)
-
-
 APP = App(
     name="charging",
     title=say("Charging"),
@@ -111,7 +107,7 @@ APP = App(
     order=11,
     where=Where.STORE,
     about=say("Charge limit, times and stations nearby"),
-    functions=FUNCTIONS,
+    functions=(schedule_charging,),
     pages={"charging": AppPage(charging)},
     starts=lambda state, rng: (ChargingSchedule(),),
 )

@@ -104,10 +104,7 @@ def drive_card(state: State) -> Block:
     unit = Label(key="home.speed_unit", text=speed_unit(signals), tone="muted", style=Type.LABEL)
     lamps = Telltales(key="home.telltales", description=lit_in_words(telltales), lit=telltales)
     far = Label(
-        key="home.range",
-        text=distance(signals, signals[ENERGY.RANGE]),
-        description=say("Range"),
-        style=Type.TITLE,
+        key="home.range", text=distance(signals, signals[ENERGY.RANGE]), description=say("Range"), style=Type.TITLE
     )
     charge = Label(
         key="home.battery", text=f"{level:.0f} %", description=say("Battery"), align="right", tone="muted"

@@ -109,7 +109,6 @@ class ManualFilm(AppData):
     since_s: float = 0.0
 
     def commands(self) -> dict[str, Any]:
-        """The topic; empty without."""
         return {"apps.film": "" if self.topic is None else TOPICS[self.topic][0]}
 
     def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
@@ -206,9 +205,6 @@ def play_manual_video(
     return locked(state, Restriction.NO_VIDEO) or Put(ManualFilm(NAMES.index(topic), state.time_s), "")
 
 
-FUNCTIONS = (play_manual_video,)
-
-
 APP = App(
     name="manual",
     title=say("Manual"),
@@ -216,7 +212,7 @@ APP = App(
     order=13,
     where=Where.STORE,
     about=say("The owner's handbook, to search in"),
-    functions=FUNCTIONS,
+    functions=(play_manual_video,),
     pages={"manual": AppPage(manual)},
     picked={"manual": "0"},
     starts=lambda state, rng: (ManualFilm(),),

@@ -7,13 +7,13 @@ from typing import Annotated, Any
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.cards import back, content, gone, heading, note, picked_at, rows, title
-from automotive_cosim.cockpit.commands import Put, Remove
+from automotive_cosim.cockpit.commands import Put, Remove, SimpleCommand
 from automotive_cosim.cockpit.flow import card, fill, grid, panels, stack
 from automotive_cosim.cockpit.functions import CallMade, named, offered, unknown
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.size import Room
-from automotive_cosim.cockpit.state import AppData, Command, State
+from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.values import minutes
 from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Row, Widget
@@ -33,29 +33,24 @@ class Memos(AppData):
         return {"apps.memos": list(self.kept), "apps.recording": self.recording_since_s is not None}
 
 
-@dataclass(frozen=True, slots=True)
-class Record(Command):
+def _record(state: State) -> Feedback:
     """Begin or end a spoken memo."""
+    memos = state.of(Memos)
+    if memos.recording_since_s is None:
+        state.keep(replace(memos, recording_since_s=state.time_s))
+        return Feedback(FeedbackCode.OK, say("the memo is being recorded"))
+    seconds = int(state.time_s - memos.recording_since_s)
+    memo = say(
+        "Memo {number}, {time}, {length}",
+        number=len(memos.kept) + 1,
+        time=state.clock,
+        length=f"{seconds // 60}:{seconds % 60:02d}",
+    )
+    state.keep(Memos((*memos.kept, memo)))
+    return Feedback(FeedbackCode.OK, say("{memo} is kept", memo=memo))
 
-    def aims(self, state: State) -> frozenset[str]:
-        """The memos, and that one is being recorded."""
-        return frozenset({"apps.memos", "apps.recording"})
 
-    def perform(self, state: State) -> Feedback:
-        """The begin, or the memo."""
-        memos = state.of(Memos)
-        if memos.recording_since_s is None:
-            state.keep(replace(memos, recording_since_s=state.time_s))
-            return Feedback(FeedbackCode.OK, say("the memo is being recorded"))
-        seconds = int(state.time_s - memos.recording_since_s)
-        memo = say(
-            "Memo {number}, {time}, {length}",
-            number=len(memos.kept) + 1,
-            time=state.clock,
-            length=f"{seconds // 60}:{seconds % 60:02d}",
-        )
-        state.keep(Memos((*memos.kept, memo)))
-        return Feedback(FeedbackCode.OK, say("{memo} is kept", memo=memo))
+RECORD = SimpleCommand(_record, ("apps.memos", "apps.recording"))
 
 
 def memo(state: State) -> tuple[Widget, ...]:
@@ -75,7 +70,7 @@ def memo(state: State) -> tuple[Widget, ...]:
         icon_size=34,
         style=Type.TITLE,
         look=Look.ACCENT if since is None else Look.CRITICAL,
-        on_tap=Record(),
+        on_tap=RECORD,
     )
     recorder = card(
         title(Icon.MEMO, say("Memo")),
@@ -124,7 +119,7 @@ def memo_note(state: State) -> tuple[Widget, ...]:
 @offered
 def record_memo(state: State) -> CallMade:
     """Begin to record a spoken memo, or end the one that is being recorded."""
-    return Record()
+    return RECORD
 
 
 @offered
@@ -138,9 +133,6 @@ def delete_memo(state: State, memo: Annotated[str, "The memo, as the screen memo
     return Put(replace(memos, kept=(*memos.kept[:at], *memos.kept[at + 1 :])), "")
 
 
-FUNCTIONS = (record_memo, delete_memo)
-
-
 APP = App(
     name="memo",
     title=say("Memos"),
@@ -148,7 +140,7 @@ APP = App(
     order=14,
     where=Where.STORE,
     about=say("Spoken notes"),
-    functions=FUNCTIONS,
+    functions=(record_memo, delete_memo),
     pages={"memo": AppPage(memo), "note": AppPage(memo_note, Room.ONE)},
     aliases={"memos": ""},
     starts=lambda state, rng: (Memos(),),

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
-from automotive_cosim.cockpit.apps.climate.screens import glass_words
+from automotive_cosim.cockpit.apps.climate import glass_words
 from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
-from automotive_cosim.cockpit.apps.vehicle.commands import Wash
+from automotive_cosim.cockpit.apps.vehicle.commands import WASH
 from automotive_cosim.cockpit.cards import content, heading
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.controls import CONTROLS
@@ -221,10 +221,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         Icon.DAY,
         say("Low sun ahead, measured by the light sensor at the mirror. A clean windshield reduces glare."),
         _glare,
-        (
-            Act("brightness", HMI.BRIGHTNESS, 100.0, 70.0, say("Bright screen")),
-            _LOW_BEAM,
-        ),
+        (Act("brightness", HMI.BRIGHTNESS, 100.0, 70.0, say("Bright screen")), _LOW_BEAM),
         AlertKind.VISIBILITY,
     ),
     "dust": Phenomenon(
@@ -248,10 +245,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         Icon.AIR_MIDDLE,
         say("Wind from the weather service and the stability control."),
         _wind,
-        (
-            Act("stability", ADAS.STABILITY_CONTROL, text=say("Stability")),
-            Act("lane_keeping", ADAS.LANE_KEEPING),
-        ),
+        (Act("stability", ADAS.STABILITY_CONTROL, text=say("Stability")), Act("lane_keeping", ADAS.LANE_KEEPING)),
         AlertKind.WEATHER,
     ),
     "glass": Phenomenon(
@@ -259,12 +253,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         Icon.AIR_UP,
         say("Fog inside clears with dry air, drops outside with the wipers."),
         _glass,
-        (
-            _FRONT_DEFROST,
-            _REAR_DEFROST,
-            Act("air_conditioning", HVAC.AIR_CONDITIONING),
-            _RECIRCULATION,
-        ),
+        (_FRONT_DEFROST, _REAR_DEFROST, Act("air_conditioning", HVAC.AIR_CONDITIONING), _RECIRCULATION),
         AlertKind.VISIBILITY,
     ),
 }
@@ -305,7 +294,7 @@ def _detail(known: Phenomenon, state: State) -> Block:
         look=Look.ACCENT,
         on_tap=WarnDriver(Alert(known.alert)),
     )
-    wash = Button(key="outside.wash", text=say("Wash the windshield"), icon=Icon.WASHER, on_tap=Wash())
+    wash = Button(key="outside.wash", text=say("Wash the windshield"), icon=Icon.WASHER, on_tap=WASH)
     picture = Glyph(icon=known.icon, size=88, tone="warning" if bad else "accent")
     acts = [_act(act, state) for act in known.acts]
     return card(

@@ -8,12 +8,12 @@ from typing import Annotated, Any
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.cards import choices, content, heading, note, rows, title
-from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.commands import Put, SimpleCommand
 from automotive_cosim.cockpit.flow import card, fill, panels, stack
 from automotive_cosim.cockpit.functions import CallMade, offered
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.signals import LINK
-from automotive_cosim.cockpit.state import AppData, Command, State
+from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Label, Look, Row, Widget
 from automotive_cosim.contracts import Feedback
@@ -60,25 +60,19 @@ class Parking(AppData):
 OFFLINE = say("Paying needs a connection")
 
 
-@dataclass(frozen=True, slots=True)
-class Pay(Command):
+def _pay(state: State) -> Feedback:
     """Pay for the parking space as it is set."""
+    if not state.signals[LINK.ONLINE] or state.outside is None:
+        return state.refused(OFFLINE)
+    now = state.of(Parking)
+    until = state.clock_at(state.outside.local_time + timedelta(minutes=now.minutes))
+    ticket = Ticket(now.zone, now.minutes, now.price, until)
+    state.keep(replace(now, tickets=(*now.tickets, ticket)))
+    price = Quantity(f"{ticket.price:.2f}")
+    return state.said(say("Paid {price}: {zone} until {time}", price=price, zone=now.zone, time=until), Icon.TICKET)
 
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"payments"})
 
-    def perform(self, state: State) -> Feedback:
-        """The ticket, if the car is online."""
-        if not state.signals[LINK.ONLINE] or state.outside is None:
-            return state.refused(OFFLINE)
-        now = state.of(Parking)
-        until = state.clock_at(state.outside.local_time + timedelta(minutes=now.minutes))
-        ticket = Ticket(now.zone, now.minutes, now.price, until)
-        state.keep(replace(now, tickets=(*now.tickets, ticket)))
-        price = Quantity(f"{ticket.price:.2f}")
-        return state.said(
-            say("Paid {price}: {zone} until {time}", price=price, zone=now.zone, time=until), Icon.TICKET
-        )
+PAY = SimpleCommand(_pay, ("payments",))
 
 
 STAYS = (30, 60, 120, 240)
@@ -116,7 +110,7 @@ def parking(state: State) -> tuple[Widget, ...]:
         icon_size=34,
         style=Type.TITLE,
         look=Look.ACCENT,
-        on_tap=Pay(),
+        on_tap=PAY,
         disabled="" if state.signals[LINK.ONLINE] else OFFLINE,
     )
     order = card(
@@ -164,10 +158,7 @@ def set_parking_time(state: State, minutes: Annotated[int, OneOf(map(str, STAYS)
 @offered
 def pay_parking(state: State) -> CallMade:
     """Pay for the parking space as it is set. It cannot be taken back."""
-    return Pay()
-
-
-FUNCTIONS = (set_parking_zone, set_parking_time, pay_parking)
+    return PAY
 
 
 APP = App(
@@ -177,7 +168,7 @@ APP = App(
     order=12,
     where=Where.STORE,
     about=say("Pay for a parking space from the car"),
-    functions=FUNCTIONS,
+    functions=(set_parking_zone, set_parking_time, pay_parking),
     pages={"parking": AppPage(parking)},
     starts=lambda state, rng: (Parking(),),
 )

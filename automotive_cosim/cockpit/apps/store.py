@@ -75,15 +75,12 @@ def install_app(
     return locked(state, Restriction.NO_SETUP) or Put(state.of(Installed).with_app(found, on, offers), "")
 
 
-FUNCTIONS = (install_app,)
-
-
 APP = App(
     name="store",
     title=say("Store"),
     icon=Icon.STORE,
     order=18,
-    functions=FUNCTIONS,
+    functions=(install_app,),
     pages={"store": AppPage(store, Room.ONE)},
     starts=lambda state, rng: (Installed(tuple(app.name for app in apps_in(Where.STORE) if app.preinstalled)),),
 )

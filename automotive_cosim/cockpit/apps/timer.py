@@ -9,12 +9,12 @@ from annotated_types import Ge, Le, MultipleOf
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.cards import HELD_STEPS, choices, content, heading, title
-from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.commands import Put, SimpleCommand
 from automotive_cosim.cockpit.flow import card, fill, line
 from automotive_cosim.cockpit.functions import CallMade, offered
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.size import Room
-from automotive_cosim.cockpit.state import AppData, Command, State
+from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.values import minutes
 from automotive_cosim.cockpit.widgets import Bar, Button, Label, Look, Widget
@@ -53,30 +53,23 @@ class Countdown(AppData):
             state.notify(words, Icon.CLOCK, Severity.WARNING, opens=("timer", ""))
 
 
-@dataclass(frozen=True, slots=True)
-class StartTimer(Command):
+def _start_timer(state: State) -> Feedback:
     """Count down from the length that is set."""
-
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"timer.running"})
-
-    def perform(self, state: State) -> Feedback:
-        """The countdown, from now on."""
-        now = state.of(Countdown)
-        return state.change(
-            replace(now, begun_s=state.time_s), say("the timer runs for {minutes} minutes", minutes=now.minutes)
-        )
+    now = state.of(Countdown)
+    return state.change(
+        replace(now, begun_s=state.time_s), say("the timer runs for {minutes} minutes", minutes=now.minutes)
+    )
 
 
-@dataclass(frozen=True, slots=True)
-class StopTimer(Command):
+START_TIMER = SimpleCommand(_start_timer, ("timer.running",))
+
+
+def _stop_timer(state: State) -> Feedback:
     """Stop the countdown."""
+    return state.change(replace(state.of(Countdown), begun_s=None), say("The timer is stopped"))
 
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"timer.running"})
 
-    def perform(self, state: State) -> Feedback:
-        return state.change(replace(state.of(Countdown), begun_s=None), say("The timer is stopped"))
+STOP_TIMER = SimpleCommand(_stop_timer, ("timer.running",))
 
 
 LENGTHS_MIN = (5, 10, 15, 20, 30, 60, 120)
@@ -122,7 +115,7 @@ def timer(state: State) -> tuple[Widget, ...]:
         icon_size=34,
         style=Type.TITLE,
         look=Look.CRITICAL if runs else Look.ACCENT,
-        on_tap=StopTimer() if runs else StartTimer(),
+        on_tap=STOP_TIMER if runs else START_TIMER,
     )
     whole = card(
         title(Icon.CLOCK, say("Timer"), "timer.title"),
@@ -152,10 +145,7 @@ def set_timer(
 @offered
 def run_timer(state: State, on: Annotated[bool, "True starts it, false stops it."]) -> CallMade:
     """Start the timer with the length that is set, or stop it."""
-    return StartTimer() if on else StopTimer()
-
-
-FUNCTIONS = (set_timer, run_timer)
+    return START_TIMER if on else STOP_TIMER
 
 
 APP = App(
@@ -166,7 +156,7 @@ APP = App(
     where=Where.STORE,
     about=say("Counts down minutes and alerts you"),
     preinstalled=False,
-    functions=FUNCTIONS,
+    functions=(set_timer, run_timer),
     pages={"timer": AppPage(timer, Room.ONE)},
     starts=lambda state, rng: (Countdown(),),
 )

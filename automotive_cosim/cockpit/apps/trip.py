@@ -63,7 +63,6 @@ class TripMeters(AppData):
     b: TripMeter = FROM_HERE
 
     def commands(self) -> dict[str, Any]:
-        """How often each was reset."""
         return {"trip.resets": self.resets, "trip.resets_b": self.b.resets}
 
     def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
@@ -83,7 +82,6 @@ class ResetTrip(Command):
         return frozenset({"trip.resets_b" if self.meter == "b" else "trip.resets"})
 
     def perform(self, state: State) -> Feedback:
-        """The meter at zero."""
         trip, here = state.of(TripMeters), odometer(state)
         if self.meter == "a":
             state.keep(replace(trip, resets=trip.resets + 1, since=here))
@@ -162,9 +160,6 @@ def reset_trip(state: State, meter: Annotated[Literal["a", "b"], "Which trip met
     return ResetTrip(meter)
 
 
-FUNCTIONS = (reset_trip,)
-
-
 APP = App(
     name="trip",
     title=say("Trip"),
@@ -172,7 +167,7 @@ APP = App(
     order=15,
     where=Where.STORE,
     about=say("Distance, time and consumption"),
-    functions=FUNCTIONS,
+    functions=(reset_trip,),
     pages={"trip": AppPage(trip, Room.ONE), "trip_b": AppPage(trip_b, Room.ONE)},
     starts=lambda state, rng: (TripMeters(),),
 )

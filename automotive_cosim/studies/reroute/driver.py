@@ -12,8 +12,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import DrivingState
 from automotive_cosim.cosim.car import ALTERNATIVES_FROM_S
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
-from automotive_cosim.episode.loop import play
-from automotive_cosim.episode.session import Session
+from automotive_cosim.episode.session import Session, play
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.studies.reroute.plan import StudyJob, StudyPlan, named

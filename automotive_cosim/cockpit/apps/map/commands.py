@@ -77,7 +77,6 @@ class Pan(Message):
     down: float
 
     def perform(self, state: State) -> Feedback:
-        """The map's new point."""
         point = panned(state, self.right, self.down)
         return state.change(replace(state.of(Viewpoint), panned=point), say("The map is moved"))
 

@@ -44,8 +44,7 @@ def navigate_to(
 
 @offered
 def take_route(
-    state: State,
-    number: Annotated[int, "Number of the route, as the screen route has it.", Ge(2), Le(9)],
+    state: State, number: Annotated[int, "Number of the route, as the screen route has it.", Ge(2), Le(9)]
 ) -> CallMade:
     """Take another route to the same destination."""
     ways = () if state.outside is None else state.outside.driving.ahead.alternatives

@@ -12,13 +12,7 @@ from automotive_cosim.cockpit.flow import fill, framed, grid, line
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.notices import LOW_KPA
 from automotive_cosim.cockpit.occupants import Kind, Seat, seated
-from automotive_cosim.cockpit.sensor_range import (
-    BLUE_LIGHT_M,
-    CAMERA_M,
-    CLOSING_MPS,
-    HORIZON_M,
-    REAR_RADAR_M,
-)
+from automotive_cosim.cockpit.sensor_range import BLUE_LIGHT_M, CAMERA_M, CLOSING_MPS, HORIZON_M, REAR_RADAR_M
 from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOTION, OCCUPANT, SEAT, TYRE, Signals
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
@@ -153,9 +147,7 @@ def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
             say("No limit in {distance}", distance=far)
             if kmh is None
             else say(
-                "Limit {speed} in {distance}",
-                speed=f"{speed(signals, kmh)} {speed_unit(signals)}",
-                distance=far,
+                "Limit {speed} in {distance}", speed=f"{speed(signals, kmh)} {speed_unit(signals)}", distance=far
             )
         )
         yield Sight(SightKind.LIMIT, told, limit_m, kmh, _limit_hours(state, driving, limit, limit_m))

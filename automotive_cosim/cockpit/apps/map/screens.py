@@ -23,18 +23,7 @@ from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.values import distance, sign_figure, sign_in_words
-from automotive_cosim.cockpit.widgets import (
-    Badge,
-    Button,
-    Card,
-    Glyph,
-    Label,
-    Look,
-    MapView,
-    Row,
-    SignView,
-    Widget,
-)
+from automotive_cosim.cockpit.widgets import Badge, Button, Card, Glyph, Label, Look, MapView, Row, SignView, Widget
 from automotive_cosim.contracts import IncidentKind, Road, RoadHere
 from automotive_cosim.contracts.text import say
 
@@ -109,10 +98,7 @@ def sight(state: State) -> Widget:
 
     closer = zoomed("in", say("Zoom in"), Icon.PLUS, -1, say("The map cannot zoom in further"))
     further = zoomed("out", say("Zoom out"), Icon.MINUS, 1, say("The map cannot zoom out further"))
-    buttons = fill(
-        keys,
-        stack((64, _orientation(state)), REST, (64, voice), 12, (64, closer), 12, (64, further)),
-    )
+    buttons = fill(keys, stack((64, _orientation(state)), REST, (64, voice), 12, (64, closer), 12, (64, further)))
     north, *others = (button.rect for button in buttons)
     over = (
         *(each.rect for each in sign),

@@ -20,7 +20,6 @@ class Play(Command):
     playlist: str = ""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The entry and its playlist."""
         return frozenset({MEDIA.SELECTED.path, "media.playlist"})
 
     def perform(self, state: State) -> Feedback:
@@ -41,7 +40,6 @@ class Skip(Command):
     by: int
 
     def aims(self, state: State) -> frozenset[str]:
-        """The entry and its playlist."""
         return frozenset({MEDIA.SELECTED.path, "media.playlist"})
 
     def perform(self, state: State) -> Feedback:

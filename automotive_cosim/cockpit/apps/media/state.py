@@ -127,7 +127,6 @@ class Listening(AppData):
         return next((known.uris for known in self.playlists if known.name == playlist), ())
 
     def commands(self) -> dict[str, Any]:
-        """The choices as app data."""
         return {
             "media.favourites": list(self.favourites),
             "media.playlists": {known.name: list(known.uris) for known in self.playlists},

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from automotive_cosim.cockpit.apps.phone.state import Directory, OnCall, PastCall, Phone, tell
+from automotive_cosim.cockpit.commands import SimpleCommand
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import Command, State
@@ -34,78 +35,62 @@ class Dial(Command):
         return state.said(say("Calling {who}", who=self.who), Icon.CALL_OUT)
 
 
-@dataclass(frozen=True, slots=True)
-class CallEmergency(Command):
+def _call_emergency(state: State) -> Feedback:
     """Call the emergency services."""
-
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"calls"})
-
-    def perform(self, state: State) -> Feedback:
-        """The call, with the car's position."""
-        phone = state.of(Phone)
-        state.keep(replace(phone, called=(*phone.called, "emergency")))
-        state.notify(say("Emergency call placed"), Icon.PHONE_ALERT, Severity.CRITICAL)
-        return Feedback(FeedbackCode.OK, say("the emergency services are called"))
+    phone = state.of(Phone)
+    state.keep(replace(phone, called=(*phone.called, "emergency")))
+    state.notify(say("Emergency call placed"), Icon.PHONE_ALERT, Severity.CRITICAL)
+    return Feedback(FeedbackCode.OK, say("the emergency services are called"))
 
 
-@dataclass(frozen=True, slots=True)
-class HangUp(Command):
+CALL_EMERGENCY = SimpleCommand(_call_emergency, ("calls",))
+
+
+def _hang_up(state: State) -> Feedback:
     """End the call."""
-
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"phone.on_call"})
-
-    def perform(self, state: State) -> Feedback:
-        """The end of the call."""
-        phone = state.of(Phone)
-        if phone.on_call is None:
-            return Feedback(FeedbackCode.NO_EFFECT, say("there is no call"))
-        state.keep(replace(phone, on_call=None))
-        tell(state)
-        return Feedback(FeedbackCode.OK, say("the call with {who} is over", who=phone.on_call.who))
+    phone = state.of(Phone)
+    if phone.on_call is None:
+        return Feedback(FeedbackCode.NO_EFFECT, say("there is no call"))
+    state.keep(replace(phone, on_call=None))
+    tell(state)
+    return Feedback(FeedbackCode.OK, say("the call with {who} is over", who=phone.on_call.who))
 
 
-@dataclass(frozen=True, slots=True)
-class TakeCall(Command):
+HANG_UP = SimpleCommand(_hang_up, ("phone.on_call",))
+
+
+def _take_call(state: State) -> Feedback:
     """Answer the ringing call."""
-
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"calls.answered"})
-
-    def perform(self, state: State) -> Feedback:
-        """The caller is on the phone."""
-        phone, ringing = state.of(Phone), state.of(Phone).ringing
-        if ringing is None:
-            return NOBODY_CALLS
-        state.keep(
-            replace(
-                phone.logged(PastCall(ringing.who, state.clock, "in")),
-                ringing=None,
-                on_call=OnCall(ringing.who, state.time_s),
-                taken=(*phone.taken, ringing.who),
-            )
+    phone, ringing = state.of(Phone), state.of(Phone).ringing
+    if ringing is None:
+        return NOBODY_CALLS
+    state.keep(
+        replace(
+            phone.logged(PastCall(ringing.who, state.clock, "in")),
+            ringing=None,
+            on_call=OnCall(ringing.who, state.time_s),
+            taken=(*phone.taken, ringing.who),
         )
-        tell(state)
-        return Feedback(FeedbackCode.OK, say("you are on the phone with {who}", who=ringing.who))
+    )
+    tell(state)
+    return Feedback(FeedbackCode.OK, say("you are on the phone with {who}", who=ringing.who))
 
 
-@dataclass(frozen=True, slots=True)
-class DeclineCall(Command):
+TAKE_CALL = SimpleCommand(_take_call, ("calls.answered",))
+
+
+def _decline_call(state: State) -> Feedback:
     """Decline the ringing call."""
+    phone, ringing = state.of(Phone), state.of(Phone).ringing
+    if ringing is None:
+        return NOBODY_CALLS
+    logged = phone.logged(PastCall(ringing.who, state.clock, "missed"))
+    state.keep(replace(logged, ringing=None, declined=(*phone.declined, ringing.who)))
+    tell(state)
+    return Feedback(FeedbackCode.OK, say("the call from {who} is declined", who=ringing.who))
 
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"calls.declined"})
 
-    def perform(self, state: State) -> Feedback:
-        """The call is missed."""
-        phone, ringing = state.of(Phone), state.of(Phone).ringing
-        if ringing is None:
-            return NOBODY_CALLS
-        logged = phone.logged(PastCall(ringing.who, state.clock, "missed"))
-        state.keep(replace(logged, ringing=None, declined=(*phone.declined, ringing.who)))
-        tell(state)
-        return Feedback(FeedbackCode.OK, say("the call from {who} is declined", who=ringing.who))
+DECLINE_CALL = SimpleCommand(_decline_call, ("calls.declined",))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +109,7 @@ class SendReply(Command):
             return state.refused(NOT_LINKED)
         ringing = state.of(Phone).ringing
         if ringing is not None and ringing.who == self.to:
-            DeclineCall().perform(state)
+            DECLINE_CALL.perform(state)
         state.keep(state.of(Phone).replied(self.to, self.text, state.time_s))
         tell(state)
         return state.said(say("Sent to {to}: {text}", to=self.to, text=self.text), Icon.REPLY)

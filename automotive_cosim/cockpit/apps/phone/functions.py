@@ -6,26 +6,18 @@ from dataclasses import replace
 from typing import Annotated
 
 from automotive_cosim.cockpit.apps.phone.commands import (
+    DECLINE_CALL,
+    HANG_UP,
     NOBODY_CALLS,
-    DeclineCall,
+    TAKE_CALL,
     Dial,
-    HangUp,
     Read,
     SendReply,
-    TakeCall,
 )
 from automotive_cosim.cockpit.apps.phone.figure import SENTENCES
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phone
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import (
-    CLOCK,
-    CallMade,
-    disabled,
-    locked,
-    minute_of,
-    named,
-    offered,
-)
+from automotive_cosim.cockpit.functions import CLOCK, CallMade, disabled, locked, minute_of, named, offered
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import Feedback, FeedbackCode
@@ -58,11 +50,11 @@ def handle_call(
     phone = state.of(Phone)
     match act:
         case "answer":
-            return TakeCall() if phone.ringing else NOBODY_CALLS
+            return TAKE_CALL if phone.ringing else NOBODY_CALLS
         case "decline":
-            return DeclineCall() if phone.ringing else NOBODY_CALLS
+            return DECLINE_CALL if phone.ringing else NOBODY_CALLS
         case "hang_up":
-            return HangUp()
+            return HANG_UP
         case _:
             if phone.on_call is None:
                 return Feedback(FeedbackCode.NO_EFFECT, say("there is no call"))
@@ -153,12 +145,4 @@ def _found(state: State, name: str) -> str | Feedback:
     return locked(state, Restriction.LIMIT_CONTENT) or other
 
 
-FUNCTIONS = (
-    call,
-    handle_call,
-    send_message,
-    send_figure,
-    read_messages,
-    favourite_contact,
-    do_not_disturb,
-)
+FUNCTIONS = (call, handle_call, send_message, send_figure, read_messages, favourite_contact, do_not_disturb)

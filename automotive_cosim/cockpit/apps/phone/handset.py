@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.phone.commands import DeclineCall, HangUp, TakeCall
-from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
+from automotive_cosim.cockpit.apps.phone.commands import DECLINE_CALL, HANG_UP, TAKE_CALL
+from automotive_cosim.cockpit.apps.phone.state import Directory, OnCall, Phone
 from automotive_cosim.cockpit.apps.settings.state import Connections
 from automotive_cosim.cockpit.cards import content
 from automotive_cosim.cockpit.commands import Put
@@ -47,7 +47,13 @@ def _handset(state: State) -> BlockPart:
         look=Look.CRITICAL,
         on_tap=Show("emergency"),
     )
-    call = _ringing(phone.ringing.who) if phone.ringing else _on_call(state) if phone.on_call else _linked(state)
+    call = (
+        _ringing(phone.ringing.who)
+        if phone.ringing
+        else _on_call(phone, phone.on_call, state)
+        if phone.on_call
+        else _linked(state)
+    )
 
     def divide(box: Rect) -> tuple[Rect, ...]:
         """The buttons stand side by side where there is the room."""
@@ -92,10 +98,7 @@ def _linked(state: State) -> Block:
     )
 
 
-def _on_call(state: State) -> Block:
-    phone = state.of(Phone)
-    call = phone.on_call
-    assert call is not None
+def _on_call(phone: Phone, call: OnCall, state: State) -> Block:
     mute = Tile(
         key="call.mute",
         text=say("Mute"),
@@ -106,7 +109,7 @@ def _on_call(state: State) -> Block:
             say("The microphone is on") if call.muted else say("The microphone is off"),
         ),
     )
-    end = _act("call.end", say("End"), Icon.HANG_UP, Look.CRITICAL, HangUp())
+    end = _act("call.end", say("End"), Icon.HANG_UP, Look.CRITICAL, HANG_UP)
     return _call(
         Icon.IN_CALL,
         "good",
@@ -117,8 +120,8 @@ def _on_call(state: State) -> Block:
 
 
 def _ringing(who: str) -> Block:
-    answer = _act("phone.answer", say_in("call", "Answer"), Icon.PHONE, Look.ACCENT, TakeCall())
-    decline = _act("phone.decline", say("Decline"), Icon.HANG_UP, Look.CRITICAL, DeclineCall())
+    answer = _act("phone.answer", say_in("call", "Answer"), Icon.PHONE, Look.ACCENT, TAKE_CALL)
+    decline = _act("phone.decline", say("Decline"), Icon.HANG_UP, Look.CRITICAL, DECLINE_CALL)
     return _call(
         Icon.CALL_IN,
         "good",

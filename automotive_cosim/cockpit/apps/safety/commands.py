@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from automotive_cosim.cockpit.apps.safety.state import ADVICE, KINDS, AlertDraft, AlertRecord, Alerts
+from automotive_cosim.cockpit.commands import SimpleCommand
 from automotive_cosim.cockpit.restrictions import STRING_LIMIT
 from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.signals import ADAS
@@ -33,30 +34,23 @@ class WarnDriver(Command):
         return _give(state, Alert(draft.kind, draft.severity, "", draft.speed_kmh))
 
 
-@dataclass(frozen=True, slots=True)
-class AskSlowDown(Command):
+def _ask_slow_down(state: State) -> Feedback:
     """Ask the driver to go no faster than the advised speed, or the limit sign."""
-
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"requests"})
-
-    def perform(self, state: State) -> Feedback:
-        """The request, if a speed is known."""
-        wanted = state.of(AlertDraft).speed_kmh or state.signals[ADAS.LIMIT_SIGN]
-        if wanted is None:
-            return state.refused(say("No limit sign is known: set an advised speed first"))
-        return Ask(SlowDown(wanted)).perform(state)
+    wanted = state.of(AlertDraft).speed_kmh or state.signals[ADAS.LIMIT_SIGN]
+    if wanted is None:
+        return state.refused(say("No limit sign is known: set an advised speed first"))
+    return Ask(SlowDown(wanted)).perform(state)
 
 
-@dataclass(frozen=True, slots=True)
-class AskPullOver(Command):
+ASK_SLOW_DOWN = SimpleCommand(_ask_slow_down, ("requests",))
+
+
+def _ask_pull_over(state: State) -> Feedback:
     """Ask the driver to stop at the side."""
+    return Ask(PullOver()).perform(state)
 
-    def aims(self, state: State) -> frozenset[str]:
-        return frozenset({"requests"})
 
-    def perform(self, state: State) -> Feedback:
-        return Ask(PullOver()).perform(state)
+ASK_PULL_OVER = SimpleCommand(_ask_pull_over, ("requests",))
 
 
 def _give(state: State, alert: Alert) -> Feedback:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.phone.commands import CallEmergency
+from automotive_cosim.cockpit.apps.phone.commands import CALL_EMERGENCY
 from automotive_cosim.cockpit.apps.phone.state import Phone
-from automotive_cosim.cockpit.apps.safety.commands import AskPullOver, AskSlowDown, WarnDriver
+from automotive_cosim.cockpit.apps.safety.commands import ASK_PULL_OVER, ASK_SLOW_DOWN, WarnDriver
 from automotive_cosim.cockpit.apps.safety.state import KINDS, AlertDraft, AlertRecord, Alerts
 from automotive_cosim.cockpit.cards import HELD_STEPS, SMALL, choices, content, heading, rows, switch
 from automotive_cosim.cockpit.commands import Put
@@ -27,11 +27,7 @@ SEVERITIES: dict[Severity, tuple[str, Icon]] = {
     Severity.WARNING: (say("Warning"), Icon.WARNING),
     Severity.CRITICAL: (say("Critical"), Icon.CRITICAL),
 }
-_URGENT = {
-    Severity.INFO: say("info"),
-    Severity.WARNING: say("warning"),
-    Severity.CRITICAL: say("critical"),
-}
+_URGENT = {Severity.INFO: say("info"), Severity.WARNING: say("warning"), Severity.CRITICAL: say("critical")}
 """A severity within a line."""
 SLOWEST_KMH, FASTEST_KMH, STEP_KMH = 10.0, 180.0, 10.0
 
@@ -154,8 +150,8 @@ def _help(state: State) -> Block:
         2,
         12,
         switch(LIGHTS.HAZARD, state, key="safety.hazard_lights"),
-        button("slow_down", say("Slow down"), Icon.SLOWER, AskSlowDown()),
-        button("pull_over", say("Pull over"), Icon.PULL_OVER, AskPullOver()),
+        button("slow_down", say("Slow down"), Icon.SLOWER, ASK_SLOW_DOWN),
+        button("pull_over", say("Pull over"), Icon.PULL_OVER, ASK_PULL_OVER),
         button("emergency_call", say("SOS call"), Icon.PHONE_ALERT, Show("emergency"), Look.CRITICAL),
     )
     return stack((204, buttons), GAP, (REST, _history(state)))
@@ -201,7 +197,7 @@ def emergency(state: State) -> tuple[Widget, ...]:
         icon=Icon.PHONE,
         look=Look.CRITICAL,
         style=Type.STRONG,
-        on_tap=CallEmergency(),
+        on_tap=CALL_EMERGENCY,
     )
     whole = card(
         (72, Glyph(icon=Icon.PHONE_ALERT, size=64, tone="accent")),

@@ -38,11 +38,7 @@ class Connections(AppData):
     """Whether the tablet is paired too."""
 
     def commands(self) -> dict[str, Any]:
-        """The network and the devices."""
-        return {
-            "wifi.network": self.network,
-            "bluetooth.devices": [self.phone, *([TABLET] if self.tablet else [])],
-        }
+        return {"wifi.network": self.network, "bluetooth.devices": [self.phone, *([TABLET] if self.tablet else [])]}
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,21 +2,11 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.apps.vehicle.commands import Honk
+from automotive_cosim.cockpit.apps.vehicle.commands import HONK
 from automotive_cosim.cockpit.apps.vehicle.screens import page
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, CarMemory
 from automotive_cosim.cockpit.camera import scene
-from automotive_cosim.cockpit.cards import (
-    SMALL,
-    choice,
-    choices,
-    fact,
-    heading,
-    levels,
-    slider,
-    stepper,
-    switch,
-)
+from automotive_cosim.cockpit.cards import SMALL, choice, choices, fact, heading, levels, slider, stepper, switch
 from automotive_cosim.cockpit.commands import Put, SetAll
 from automotive_cosim.cockpit.controls import CONTROLS
 from automotive_cosim.cockpit.flow import Block, card, framed, grid, line
@@ -45,7 +35,7 @@ def driving(state: State) -> tuple[Widget, ...]:
         10,
         switch(DRIVE.PARKING_BRAKE, state),
         switch(DRIVE.PARKING_BRAKE_AUTO, state),
-        Button(key="drive.horn", text=say("Horn"), icon=Icon.WARN, on_tap=Honk()),
+        Button(key="drive.horn", text=say("Horn"), icon=Icon.WARN, on_tap=HONK),
         framed(washer, look="none"),
     )
     hold = card(heading(say("Brake and horn")), 8, (REST, tiles), padding=SMALL)
@@ -172,12 +162,7 @@ def seats(state: State) -> tuple[Widget, ...]:
     known = (("driver", say("Driver")), ("passenger", say("Passenger")))
     whose = choices("seat.who", ((key, text, Icon.SEAT, who == key, Pick("seats", key)) for key, text in known))
     lines = [_adjust(signal, CONTROLS[signal].name, "", 150, 10, state) for signal in _SEATS[who]]
-    left = card(
-        (60, whose),
-        16,
-        (REST, grid(1, 10, *lines, levels(massage, state, MASSAGE_LEVELS))),
-        padding=SMALL,
-    )
+    left = card((60, whose), 16, (REST, grid(1, 10, *lines, levels(massage, state, MASSAGE_LEVELS))), padding=SMALL)
     return page(state, (REST, line((540, left), GAP, _memory(state))))
 
 
@@ -229,12 +214,7 @@ def _memory(state: State) -> Block:
 def mirrors(state: State) -> tuple[Widget, ...]:
     """Outside mirrors, and what the cameras see behind."""
     driver = (MIRROR.DRIVER_PAN, MIRROR.DRIVER_TILT, MIRROR.DRIVER_FOLDED, MIRROR.DRIVER_HEATING)
-    passenger = (
-        MIRROR.PASSENGER_PAN,
-        MIRROR.PASSENGER_TILT,
-        MIRROR.PASSENGER_FOLDED,
-        MIRROR.PASSENGER_HEATING,
-    )
+    passenger = (MIRROR.PASSENGER_PAN, MIRROR.PASSENGER_TILT, MIRROR.PASSENGER_FOLDED, MIRROR.PASSENGER_HEATING)
     night = state.signals[HMI.DAY_NIGHT] == "NIGHT"
     road = None if state.outside is None else state.outside.driving
     cameras = (

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from annotated_types import Ge, Le
 
-from automotive_cosim.cockpit.apps.vehicle.commands import Honk, Wash
+from automotive_cosim.cockpit.apps.vehicle.commands import HONK, WASH
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, SLOTS, CarMemory
 from automotive_cosim.cockpit.commands import Put, SetAll
 from automotive_cosim.cockpit.functions import CallMade, disabled, offered
@@ -21,13 +21,13 @@ Slot = Annotated[int, "Number of the stored position.", Ge(1), Le(SLOTS)]
 @offered
 def honk(state: State) -> CallMade:
     """Sound the horn."""
-    return Honk()
+    return HONK
 
 
 @offered
 def wash_windshield(state: State) -> CallMade:
     """Wash the windshield."""
-    return Wash()
+    return WASH
 
 
 @offered

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.apps.vehicle.commands import Wash
+from automotive_cosim.cockpit.apps.vehicle.commands import WASH
 from automotive_cosim.cockpit.cards import SMALL, choice, choices, content, heading, levels, stepper, switch
 from automotive_cosim.cockpit.flow import Block, BlockItem, at, card, fill, framed, grid, line, panels, stack
 from automotive_cosim.cockpit.layout import REST
@@ -104,7 +104,7 @@ def _wipers(state: State) -> Block:
         text=say("Wash"),
         description=say("Washer fluid {share} %", share=f"{state.signals[BODY.WASHER_FLUID]:.0f}"),
         icon=Icon.WASHER,
-        on_tap=Wash(),
+        on_tap=WASH,
     )
     front = line((128, heading(say("Front wiper"))), 8, choice(BODY.FRONT_WIPER, state))
     rear = line((128, heading(say("Rear wiper"))), 8, choice(BODY.REAR_WIPER, state), 12, (150, wash))

@@ -41,12 +41,7 @@ class CarMemory(AppData):
         return replace(self, memory=(*self.memory[:slot], values, *self.memory[slot + 1 :]))
 
     def commands(self) -> dict[str, Any]:
-        """Memories, horn and washer."""
-        return {
-            "seat.memory": [list(values) for values in self.memory],
-            "horn": self.horns,
-            "washer": self.washes,
-        }
+        return {"seat.memory": [list(values) for values in self.memory], "horn": self.horns, "washer": self.washes}
 
 
 def car(rng: np.random.Generator) -> CarMemory:

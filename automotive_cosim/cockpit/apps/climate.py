@@ -1,10 +1,12 @@
-"""Climate: both seats, fan and air, glass, and the cabin's air quality."""
+"""Climate: both seats, fan and air, glass, the cabin's air quality, and a schedule."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import Annotated, Any
 
-from automotive_cosim.cockpit.apps.climate.state import ClimateSchedule
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.cards import (
     SMALL,
     about,
@@ -22,16 +24,46 @@ from automotive_cosim.cockpit.cards import (
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.controls import CONTROLS, shown
 from automotive_cosim.cockpit.flow import Block, at, card, fill, grid, line, panels, stack
+from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, offered
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, panes
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.signals import GLASS, HVAC, SEAT, Signal
-from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.timer import Timer
+from automotive_cosim.cockpit.timer import AT_SEVEN, Timer
 from automotive_cosim.cockpit.values import temperature
 from automotive_cosim.cockpit.widgets import Bar, Button, Label, Tile, Widget
+from automotive_cosim.contracts import Feedback, Surroundings
 from automotive_cosim.contracts.text import Text, say
+
+PREPARING_MIN = 30
+"""How long before the set time the climate control starts: heating and cooling take some twenty minutes."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClimateSchedule(AppData):
+    """The time at which the cabin is ready."""
+
+    timer: Timer = AT_SEVEN
+
+    def commands(self) -> dict[str, Any]:
+        return {"climate.schedule": self.timer.shown if self.timer.on else ""}
+
+    def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
+        """Starts the climate control ahead of the set time, at which the cabin is ready."""
+        if before is None or state.outside is None:
+            return
+        starts = self.timer.moved(-PREPARING_MIN).minute
+        if self.timer.on and _minute(before.local_time) < starts <= _minute(state.outside.local_time):
+            state.vehicle.command(HVAC.AUTO, True)
+            state.notify(say("The cabin is being preconditioned for {time}", time=self.timer.shown), Icon.CLIMATE)
+
+
+def _minute(time: datetime) -> float:
+    """Minute of the day."""
+    return time.hour * 60 + time.minute + time.second / 60
+
 
 SEAT_LEVELS = ((0.0, say("Off")), (50.0, say("Low")), (100.0, say("High")))
 AIRING_LEVELS = ((0.0, say("Off")), (-50.0, say("Low")), (-100.0, say("High")))
@@ -72,8 +104,7 @@ def _zone(who: str, name: str, warmth: Signal[float], seat: Signal[float], third
         style=Type.DISPLAY,
         align="centre",
     )
-    steps = stepper(warmth, state.signals)
-    steps.parts = (steps.parts[0], None, None, steps.parts[-1])  # the value stands above it, larger
+    steps = stepper(warmth, state.signals, bare=True)
     tiles = grid(
         1,
         10,
@@ -228,3 +259,28 @@ def _schedule(state: State) -> Block:
         24,
         (64, about("climate.schedule.about", words, 3)),
     )
+
+
+@offered
+def schedule_climate(
+    state: State, on: Annotated[bool, "Whether the schedule is on."], time: Annotated[str, CLOCK] = ""
+) -> CallMade:
+    """Have the cabin prepared for a time of day, or not."""
+    timer = state.of(ClimateSchedule).timer
+    minute = minute_of(time) if time else timer.minute
+    return (
+        minute if isinstance(minute, Feedback) else Put(ClimateSchedule(replace(timer, on=on, minute=minute)), "")
+    )
+
+
+APP = App(
+    name="climate",
+    title=say("Climate"),
+    icon=Icon.CLIMATE,
+    order=3,
+    where=Where.DOCK,
+    functions=(schedule_climate,),
+    pages={"climate": AppPage(climate), "comfort": AppPage(comfort)},
+    aliases={"hvac": ""},
+    starts=lambda state, rng: (ClimateSchedule(),),
+)

@@ -1,1 +1,0 @@
-"""Climate: both seats, fan and air, glass, and a schedule."""
