@@ -361,7 +361,7 @@ def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
     which takes most of the time, is an empty file."""
     import_module("automotive_cosim.envs.pool")  # has simulations of its own, whichever test imports it first
 
-    def unfilmed(film: Any, result: object) -> None:
+    def unfilmed(film: Any, *told: object) -> None:
         if film._path.parent.is_dir():
             film._path.touch()
 

@@ -113,6 +113,16 @@ def test_a_failure_for_want_of_an_act_is_told_as_that(folder: Path, simulations:
     assert [each.effect.partition(":")[0] for each in lacking] == ["goal", "in time"]
 
 
+@pytest.mark.parametrize("folder", ["twice"], indirect=True)
+def test_acts_that_are_too_many_are_counted(
+    folder: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("automotive_cosim.run.attribution.MOST_ACTS", 1)
+    one, later = attribute(folder, simulations=simulations)
+    assert one.steps == (2,)
+    assert later.effect == "not measured: 1"
+
+
 @pytest.mark.parametrize("content", ["", "[]", "{}", '{"acts": [1]}', '{"acts": [{"steps": "x"}]}'])
 def test_effects_that_cannot_be_read_are_refused_in_a_line(tmp_path: Path, content: str) -> None:
     assert read_effects(tmp_path / FILE) == []
