@@ -363,6 +363,7 @@ def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
 
 <<<<<<< HEAD
 <<<<<<< HEAD
+<<<<<<< HEAD
     def unfilmed(film: Any, row: object, told: object) -> None:
 =======
     def unfilmed(film: Any, *_: object) -> None:
@@ -370,6 +371,9 @@ def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
 =======
     def unfilmed(film: Any, *_: object) -> None:
 >>>>>>> ready/view
+=======
+    def unfilmed(film: Any, *told: object) -> None:
+>>>>>>> ready/acts
         if film._path.parent.is_dir():
             film._path.touch()
 

@@ -87,7 +87,7 @@ def act_effects(folder: Path, trials: Mapping[str, str]) -> Table:
         "ones given as recorded; two together where neither changed anything alone. Differences are with the act "
         "minus without it; what other random numbers change as much is no effect."
     )
-    return Table("act_effects", "Which act did it", columns, lines, note, heads=4)
+    return Table("act_effects", "Which act did it", columns, lines, note, heads=5)
 
 
 def harm(results: Results) -> Table:

@@ -128,20 +128,32 @@ class ActEffect:
         """In words."""
         told = [self.verdict] if self.verdict else []
         if self.points:
-            told.append(f"{self.points:+.0f} points")
+            told.append(f"{self.points:+.0f} points".replace("-", "−"))
         told += [_said(name, *found) for name, found in self.changed.items()]
         if not told:
             told.append("neutral")
         if self.chance:
             parts = ", ".join(_said(name, *found) for name, found in self.chance.items())
             told.append(f"no more than chance: {parts}")
+        if self.glance_s:
+            told.append(f"a glance of {_digits(self.glance_s)} s")
         return "; ".join(told)
 
 
 def _said(name: str, difference: float, noise: float) -> str:
     what, unit, _ = FIGURES[name]
-    beside = f" (draws differ by {noise:.3g})" if noise else ""
-    return f"{difference:+.3g} {unit} {what}{beside}".replace("-", "−")
+    beside = f" (draws differ by {_digits(noise)})" if noise >= 0.05 else ""
+    return f"{_digits(difference, '+')} {unit} {what}{beside}".replace("-", "−")
+
+
+def _words(act: DriveAct) -> str:
+    """An act with the speed that it asks for."""
+    slow = next((request for request in act.requests if isinstance(request, SlowDown)), None)
+    return act.words if slow is None else f"asks for {slow.speed_kmh:.0f} km/h"
+
+
+def _digits(value: float, sign: str = "") -> str:
+    return f"{value:{sign}.{0 if abs(value) >= 9.95 else 1}f}"
 
 
 def attribute(
@@ -168,7 +180,7 @@ def attribute(
     with ExitStack() as ends, forked(stored, simulations or ends.enter_context(closing(Simulations()))) as forks:
         if only is not None:
             return [forks.without(only)]
-        found = forks.effects() + forks.missing()
+        found = forks.effects() + forks.unmeasured() + forks.missing()
     path = path_of(folder, stored[0].id)
     make_folder(path.parent)
     write_whole(path, json.dumps({"acts": [asdict(each) for each in found]}, indent=1) + "\n")
@@ -206,7 +218,10 @@ def read_effects(path: Path) -> list[ActEffect]:
     """
     if not path.is_file():
         return []
-    return [from_json(ActEffect, each) for each in read_json(path)["acts"]]
+    try:
+        return [from_json(ActEffect, each) for each in read_json(path)["acts"]]
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        raise UserError(f"{path} holds no effects of acts; `automotive-cosim attribute` measures them") from error
 
 
 @dataclass(slots=True)
@@ -223,7 +238,7 @@ class _Act:
     @property
     def words(self) -> str:
         """In words, for reports."""
-        return "; ".join(act.words for act in self.acts) or "commands nothing"
+        return "; ".join(map(_words, self.acts))
 
 
 @dataclass(slots=True)
@@ -250,7 +265,7 @@ class Forks(TrialObserver):
         self.acts: list[_Act] = []
         self._session: Any = None
         self._forks: list[_Fork] = []
-        self._given = 0
+        self._given = self._more = 0
         self._untouched: tuple[Moment, ...] = ()
         self._seen: dict[tuple[int, frozenset[int], int], list[Moment]] = {}
 
@@ -284,7 +299,9 @@ class Forks(TrialObserver):
         at_s = new[0].time_s if new else self._session.steps[-2].moment.time_s + step.thought_s
         said = None if action is None else spoken(action, at_s)
         acts = [*acts_of(new, step.moment.driving), *([] if said is None else [said])]
-        if acts and len(self.acts) < MOST_ACTS:
+        if acts and len(self.acts) == MOST_ACTS:
+            self._more += 1
+        elif acts:
             text = (action.text or "") if action is not None else ""
             self.acts.append(_Act(step.number, at_s, new, acts, self._forks[-1], text))
 
@@ -315,6 +332,11 @@ class Forks(TrialObserver):
         near.sort(key=lambda pair: (pair[1].time_s - pair[0].time_s, pair[0].time_s))
         together = (self.without([act.step for act in pair]) for pair in near[:MOST_PAIRS])
         return found + [effect for effect in together if not effect.is_neutral]
+
+    def unmeasured(self) -> list[ActEffect]:
+        """A line about acts beyond ``MOST_ACTS``; none without any."""
+        last_s = round(self.acts[-1].time_s - self.moments[0].time_s, 1) if self.acts else 0.0
+        return [ActEffect((), last_s, "later acts", verdict=f"not measured: {self._more}")] if self._more else []
 
     def missing(self) -> list[ActEffect]:
         """What went wrong because nobody acted: events that were missed, or parts of the verdict that failed."""

@@ -182,6 +182,7 @@ TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
     (r"scenarios (calibrate|equilibrate)", NOT_RUN, "take minutes; tests/calibration and tests/scenarios try them"),
     (r"scenarios import (pass|city|paris)", NOT_RUN, "needs a map of the reader's; test_examples.py imports one"),
     (r"scenarios import", NOT_RUN, "test_examples.py imports the hamlet"),
+    (r"attribute", NOT_RUN, "needs a recorded run or drive; tests/run/test_attribution.py measures such"),
     (r"replay", AS_IT_IS, ""),
     (r"", AS_IT_IS, ""),
 ]

@@ -90,7 +90,8 @@ def test_a_decisive_act_is_told_with_its_effect_and_a_neutral_one_as_such(
     assert difference > 5.0 > noise
     assert slow.came.startswith(("obeyed", "ignored"))
     assert says.is_neutral
-    assert says.effect == "neutral"
+    assert says.effect.startswith("neutral; a glance of ")
+    assert slow.act == "asks for 15 km/h"
     kept = (folder / FILE).read_text()
     assert attribute(folder, simulations=simulations) == [slow, says, *lacking]
     assert (folder / FILE).read_text() == kept, "the same seed gives the same effects"
@@ -112,8 +113,26 @@ def test_a_failure_for_want_of_an_act_is_told_as_that(folder: Path, simulations:
     assert [each.effect.partition(":")[0] for each in lacking] == ["goal", "in time"]
 
 
+@pytest.mark.parametrize("folder", ["twice"], indirect=True)
+def test_acts_that_are_too_many_are_counted(
+    folder: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("automotive_cosim.run.attribution.MOST_ACTS", 1)
+    one, later = attribute(folder, simulations=simulations)
+    assert one.steps == (2,)
+    assert later.effect == "not measured: 1"
+
+
+@pytest.mark.parametrize("content", ["", "[]", "{}", '{"acts": [1]}', '{"acts": [{"steps": "x"}]}'])
+def test_effects_that_cannot_be_read_are_refused_in_a_line(tmp_path: Path, content: str) -> None:
+    assert read_effects(tmp_path / FILE) == []
+    (tmp_path / FILE).write_text(content)
+    with pytest.raises(UserError, match="`automotive-cosim attribute` measures them"):
+        read_effects(tmp_path / FILE)
+
+
 def test_what_is_no_more_than_chance_is_no_effect() -> None:
     effect = ActEffect((3,), 1.0, "alert speed", chance={"over_s": (8.0, 11.0)}, draws=5)
     assert effect.is_neutral
-    assert effect.effect == "neutral; no more than chance: +8 s above the limit (draws differ by 11)"
+    assert effect.effect == "neutral; no more than chance: +8.0 s above the limit (draws differ by 11)"
     assert json.loads(json.dumps(effect.changed)) == {}

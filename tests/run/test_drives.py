@@ -32,6 +32,7 @@ from automotive_cosim.report.drives import grouped, interval, tables, told
 from automotive_cosim.report.evaluation import write_report
 from automotive_cosim.report.regression import changes
 from automotive_cosim.report.stats import LEAST_CLUSTERS
+from automotive_cosim.run.attribution import attribute
 from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup
@@ -400,6 +401,21 @@ def test_intervals_come_from_whole_drives(folder: Path) -> None:
     names = ["watchers", "faults", "acts", "kinds", "families", "effects", "measures", "exposure"]
     assert [table.name for table in tables(mixed, folder)] == names
     assert len(grouped(mixed)) == 2
+
+
+@pytest.mark.slow
+def test_the_effects_of_a_drive_of_an_evaluation_are_in_its_report(folder: Path, simulations: Simulations) -> None:
+    rows = rows_of(folder)
+    perfect, silent = rows["rule-perfect"], rows["silent"]
+    effects = attribute(folder, perfect.id, simulations=simulations)
+    assert [each.at_s for each in effects if len(each.steps) == 1] == [act.time_s for act in perfect.acts]
+    assert all(each.points is not None for each in effects if each.steps)
+    missed = [each.effect for each in attribute(folder, silent.id, simulations=simulations)]
+    assert silent.score is not None
+    assert len(missed) == silent.score.missed
+    assert all(effect.startswith("missed ") for effect in missed)
+    found = next(table for table in tables([perfect, silent], folder) if table.name == "act_effects")
+    assert len(found.rows) == len(effects) + len(missed) > 0
 
 
 @pytest.mark.parametrize(("limits", "steps"), [({"drive_steps": 2}, 2), ({"drive_model_s": 9.0}, 100_000)])
