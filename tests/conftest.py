@@ -361,19 +361,7 @@ def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
     which takes most of the time, is an empty file."""
     import_module("automotive_cosim.envs.pool")  # has simulations of its own, whichever test imports it first
 
-<<<<<<< HEAD
-<<<<<<< HEAD
-<<<<<<< HEAD
-    def unfilmed(film: Any, row: object, told: object) -> None:
-=======
     def unfilmed(film: Any, *_: object) -> None:
->>>>>>> ready/traffic
-=======
-    def unfilmed(film: Any, *_: object) -> None:
->>>>>>> ready/view
-=======
-    def unfilmed(film: Any, *told: object) -> None:
->>>>>>> ready/acts
         if film._path.parent.is_dir():
             film._path.touch()
 
