@@ -10,7 +10,7 @@ from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.interface.controls import SPOTS, GeoInput, unrelated
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.observe import ALL
 from automotive_cosim.models.skills import SKILLS
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.row import as_json
@@ -119,7 +119,7 @@ def test_the_other_places_are_in_different_countries():
 @pytest.mark.parametrize("control", list(GeoInput))
 def test_agent_and_environment_agree_on_the_channels(control):
     agent = make_agent("asurada", settings=AgentSettings(Conditions(GeoInput(control))))
-    assert agent.channels == frozenset(Channel) - control.withheld
+    assert agent.channels == ALL - control.withheld
 
 
 def _won(simulations, agent: str, geo: GeoInput = GeoInput.FULL) -> Iterator[bool | None]:

@@ -68,7 +68,7 @@ def test_the_best_pairs_come_first(packed):
     better = replace(better, rates=(*better.rates[:-2], won, lost))
     ((table, _, _),) = tables([worse, better])
     assert [row[0] for row in table.rows] == [better.contestant.method, worse.contestant.method]
-    fewer = replace(worse, rates=(*worse.rates[:-2], rate([("a", True)], "bcd"), won))
+    fewer = replace(worse, rates=(*worse.rates[:-2], rate([("a", True), *((each, None) for each in "bcd")]), won))
     half = replace(better, rates=(*better.rates[:-2], rate([("a", True), ("b", False)]), won))
     ((table, _, _),) = tables([fewer, half])
     assert [row[0] for row in table.rows] == [half.contestant.method, fewer.contestant.method]
