@@ -61,7 +61,8 @@ def read_mapped(configuration: Configuration, read: Network | None = None) -> Ne
     def take(element: str, attributes: dict[str, str]) -> None:
         nonlocal counts
         if element == "rerouter":  # the ego is of none of the user's types
-            counts = not (attributes.get("vTypes") or attributes.get("off", "").lower() in TRUE)
+            is_off = attributes.get("off", "").lower() in TRUE or _is_zero(attributes.get("probability", "1"))
+            counts = not (attributes.get("vTypes") or is_off)
         if counts and element in closed and closes_to_cars(attributes):
             closed[element].add(attributes.get("id", ""))
 
@@ -71,6 +72,13 @@ def read_mapped(configuration: Configuration, read: Network | None = None) -> Ne
         shut = {name for name, edge in network.edges.items() if name in edges or lanes.issuperset(edge.lane_ids)}
         network = replace(network, closed_at_times=frozenset(shut))
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
+
+
+def _is_zero(text: str) -> bool:
+    try:
+        return float(text) == 0.0
+    except ValueError:  # SUMO refuses it
+        return False
 
 
 def placed(network: Network, scenario: Scenario) -> Network:

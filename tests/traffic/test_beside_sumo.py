@@ -356,14 +356,15 @@ def test_a_rerouters_own_file_is_told_because_sumo_does_not_read_it(tmp_path: Pa
     assert any("does not read the file 'r.xml' of rerouter 'r'" in note for note in scenario.notes)
 
 
-@pytest.mark.parametrize("whose", ['vTypes="lorry"', 'off="true"'])
+@pytest.mark.parametrize("whose", ['vTypes="lorry"', 'off="true"', 'probability="0"'])
 def test_a_rerouter_for_others_or_that_is_off_closes_nothing_to_the_ego(whose: str, tmp_path: Path) -> None:
     more = CLOSED.format('closingReroute id="e2"').replace("<rerouter", f"<rerouter {whose}")
-    scenario = Road(LINE + QUICK, CAR + '<vType id="lorry" vClass="truck"/>', more=more).opened(tmp_path)
+    scenario = Road(LINE + QUICK, more='<vType id="lorry" vClass="truck"/>' + more).opened(tmp_path)
     drawn = open_scenario(scenario.config, gps=False).ego.trips
     assert "e2" in {edge for trip in drawn for edge in (trip.from_edge, trip.to_edge)}
     on_it = open_scenario(scenario.config, gps=False, from_place="e2", to_place="e3")
-    with running(scenario) as (_, world, _):
+    with running(scenario) as (_, world, libsumo):
+        assert {libsumo.vehicle.getRoute(each)[1] for each in libsumo.vehicle.getIDList()} == {"e2"}, "of SUMO"
         assert depart(world, on_it).state.road.edge_id == "e2"
 
 
