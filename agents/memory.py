@@ -12,6 +12,7 @@ from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from automotive_cosim.agents.lines import one_line
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.words import shown
@@ -129,8 +130,9 @@ class Memory:
         try:
             with closing(sqlite3.connect(self._path, timeout=30)) as file, file:
                 yield file
-        except sqlite3.Error as error:
-            raise UserError(f"cannot use {self._path} as a memory: {error}; give another file") from error
+        except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter of a message that quotes damaged text
+            why = one_line(str(error))
+            raise UserError(f"cannot use {self._path} as a memory: {why}; give another file") from error
 
 
 def where(seen: Observation) -> str:

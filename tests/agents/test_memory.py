@@ -66,7 +66,11 @@ def test_texts_are_data(tmp_path, text):
 
 def test_what_is_no_memory_is_told_in_one_line(tmp_path):
     (tmp_path / "m").write_text("not a database at all, but long enough to be taken for one" * 50)
-    for path in (tmp_path / "m", tmp_path, tmp_path / "no" / "folder"):
+    Memory(tmp_path / "whole").keep(strategy(), worked=True)
+    whole = (tmp_path / "whole").read_bytes()
+    (tmp_path / "letter").write_bytes(whole.replace(b"used INTEGER", b'"\xceed INTEGER', 1))
+    (tmp_path / "quote").write_bytes(whole.replace(b"used INTEGER", b'"sed INTEGER', 1))
+    for path in (*(tmp_path / name for name in ("m", "letter", "quote", "no/folder")), tmp_path):
         with pytest.raises(UserError, match="memory") as caught:
             Memory(path)
         assert "\n" not in str(caught.value)
