@@ -194,7 +194,7 @@ def test_what_dies_or_hangs_on_a_node_costs_its_episode_alone(cluster, mine):
 @pytest.mark.proof
 def test_files_that_cannot_be_written_here_stop_the_run_and_the_command_goes_on(cluster, tmp_path):
     wanted = plan("oracle")
-    blocked = tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part"
+    blocked = tmp_path / "e" / "traces" / f"{wanted.jobs()[0].id}.jsonl.gz"
     blocked.mkdir(parents=True)
     with OnRay(cluster.address) as executor:
         with pytest.raises(UserError, match=r"cannot write to .* rerun the command to resume"):
