@@ -26,7 +26,7 @@ ROOM = (60, 2, 2)
 OTHERS = "beside them"
 
 CEILINGS = {
-    "agents": (6405, 65, 0),
+    "agents": (6478, 66, 0),
     "benchmarks": (2135, 16, 0),
     "cli": (4402, 14, 233),
     "cockpit": (17847, 176, 0),
@@ -43,20 +43,20 @@ CEILINGS = {
     "measures": (929, 8, 0),
     "models": (2167, 24, 0),
     "osm": (6379, 43, 0),
-    "proof": (2997, 16, 0),
+    "proof": (2999, 16, 0),
     "publish": (1500, 8, 0),
     "replay": (190, 1, 0),
     "report": (5499, 28, 0),
     "run": (8140, 78, 0),
-    "safety": (3727, 30, 0),
+    "safety": (3919, 32, 0),
     "scenarios": (1992, 8, 0),
     "schemas": (84, 0, 0),
     "serve": (2612, 22, 0),
     "service": (395, 4, 0),
     "studies": (12579, 112, 92),
-    "tasking": (5694, 124, 0),
+    "tasking": (5716, 124, 0),
     "tasks": (15, 0, 0),
-    "tests": (62583, 123, 0),
+    "tests": (62687, 123, 0),
     "traffic": (11493, 77, 0),
     "view": (1780, 15, 0),
     "beside them": (299, 18, 0),
@@ -64,7 +64,7 @@ CEILINGS = {
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
 
-DATA_LINES, WIDTH = 14_950, 130
+DATA_LINES, WIDTH = 15_228, 130
 """Lines of the tasks' files, with every phrasing, and characters of the longest."""
 
 
