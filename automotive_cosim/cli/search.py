@@ -65,7 +65,7 @@ def search(
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.settings import Budget
     from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
-    from automotive_cosim.safety.due import Screen, with_times
+    from automotive_cosim.safety.due import DueScreen, with_times
     from automotive_cosim.safety.findings import as_json as findings_json
     from automotive_cosim.safety.hunt import blame, hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
@@ -143,7 +143,7 @@ def search(
 
         note()
         run.tell = note
-        screen = Screen(space, plan, simulations, folder)
+        screen = DueScreen(space, plan, simulations, folder)
         for line in screen.check(how.seed):
             console.print(line, markup=False, soft_wrap=True)
         run.space = space = screen.space
@@ -236,8 +236,6 @@ def _told_before(
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.safety.forecast import RUNS_A_FAILURE, of_a_failure, search_forecast
 
-    if space.note:
-        yield space.note
     if may_use.hours is not None:
         minutes = counted(round(60 * may_use.hours), "minute")
         yield f"{minutes} at most, with earlier starts: no run begins after that"

@@ -35,6 +35,8 @@ LACKING = frozenset({"goal", "in_time", "declared"})
 """The parts of a verdict that fail for want of an act."""
 REDRAWS = 4
 """Further draws of both, with and without, where leaving an act out changed anything on the road."""
+REDRAWN = 8.0
+"""How long redraws and pairs take at most, as a multiple of the trial, so that many acts cost a few times it."""
 TOGETHER_S, MOST_PAIRS = 60.0, 15
 """Two acts that change nothing alone are left out together if they are no farther apart; the nearest first."""
 
@@ -108,15 +110,41 @@ def culprit(effects: Sequence[ActEffect], kinds: Collection[str] = ()) -> str:
 
 
 def effects(forks: Forks) -> list[ActEffect]:
-    """What each act changed, and of those that changed nothing, each pair that did."""
-    found = [without(forks, (act.step,)) for act in forks.acts]
+    """What each act changed, and of those that changed nothing, each pair that did, no act in two of them."""
+    left_s = REDRAWN * (forks.moments[-1].time_s - forks.moments[0].time_s)
+    found, left_s = _redrawn(forks, [[act] for act in forks.acts], left_s)
     idle = [act for act, effect in zip(forks.acts, found, strict=True) if effect.is_neutral]
-    if len(idle) < 2 or without(forks, [act.step for act in idle], redraws=0).is_neutral:
+    together = without(forks, [act.step for act in idle], 0) if len(idle) > 1 else None
+    if together is None or (together.is_neutral and not together.chance):
         return found
     near = [pair for pair in combinations(idle, 2) if pair[1].time_s - pair[0].time_s <= TOGETHER_S]
     near.sort(key=lambda pair: (pair[1].time_s - pair[0].time_s, pair[0].time_s))
-    pairs = (without(forks, [act.step for act in pair]) for pair in near[:MOST_PAIRS])
-    return found + [effect for effect in pairs if not effect.is_neutral]
+    told = set[int]()
+    for pair in near[:MOST_PAIRS]:
+        if left_s > 0 and not told & {act.step for act in pair}:
+            (effect,), left_s = _redrawn(forks, [pair], left_s - forks.length_s(pair))
+            if not effect.is_neutral:
+                told |= set(effect.steps)
+                found.append(effect)
+    return found
+
+
+def _moves(forks: Forks, left: Sequence[ForkedAct]) -> bool:
+    return any(weighed([compared(forks, left, 0)]))
+
+
+def _redrawn(forks: Forks, several: Sequence[Sequence[ForkedAct]], left_s: float) -> tuple[list[ActEffect], float]:
+    """What leaving each of several out changed, and how long may be driven yet: what changed the road is redrawn up
+    to ``REDRAWS`` times, all of them once before any a second time."""
+    forks.drive(several, 0)
+    draws = {number: 0 for number, left in enumerate(several) if _moves(forks, left)}
+    for draw in range(1, REDRAWS + 1):
+        for number in draws:
+            left_s -= 2 * forks.length_s(several[number])
+            draws[number] += left_s >= 0
+        forks.drive([several[number] for number, drawn in draws.items() if drawn == draw], draw)
+    steps = [[act.step for act in left] for left in several]
+    return [without(forks, some, draws.get(number, 0)) for number, some in enumerate(steps)], left_s
 
 
 def without(forks: Forks, steps: Collection[int], redraws: int = REDRAWS) -> ActEffect:
@@ -141,7 +169,7 @@ def without(forks: Forks, steps: Collection[int], redraws: int = REDRAWS) -> Act
         ),
     )
     draws = [compared(forks, left, 0)]
-    if weighed(draws)[0]:
+    if any(weighed(draws)):
         draws += [compared(forks, left, draw) for draw in range(1, redraws + 1)]
     changed, chance = weighed(draws)
     points, verdict = judged_without(forks, left, range(len(draws)))

@@ -17,7 +17,7 @@ from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.episode.episode import Episode, counterfactual
 from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.run.figures import drive_figures
-from automotive_cosim.run.forks import Fork, ForkedAct, Forks
+from automotive_cosim.run.forks import ForkedAct, Forks, TrialFork
 from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasking.verdict import judge as judge_task
 
@@ -36,7 +36,7 @@ NO_ACT = "no act"
 """In place of an act that is missing."""
 FAR_S = 20.0
 """A time to collision above it is no approach."""
-Drawn = Mapping[str, tuple[float, float]]
+FigurePairs = Mapping[str, tuple[float, float]]
 """Every figure of one draw, with the acts and without them."""
 
 
@@ -80,7 +80,7 @@ class ActEffect:
         if not told:
             told.append("neutral")
         if chance := ", ".join(_said(name, *found) for name, found in self.chance.items()):
-            told.append(f"no more than chance: {chance}")
+            told.append(f"{'may be chance' if self.draws == 1 else 'no more than chance'}: {chance}")
         if self.glance_s:
             told.append(f"a glance of {_digits(self.glance_s)} s")
         return "; ".join(told)
@@ -101,9 +101,9 @@ def figures_of(moments: Sequence[Moment], *, is_drive: bool) -> dict[str, float]
     return {name: round(value, 3) for name, value in found.items() if value is not None}
 
 
-def weighed(draws: Sequence[Drawn]) -> tuple[Drawn, Drawn]:
+def weighed(draws: Sequence[FigurePairs]) -> tuple[FigurePairs, FigurePairs]:
     """What acts changed, and what is no more than chance: by figure, a difference and how much draws without them
-    differ among each other. The first draw is the recorded one; a single one says nothing of chance."""
+    differ among each other. The first draw is the recorded one, which alone cannot be told from chance."""
     changed: dict[str, tuple[float, float]] = {}
     chance: dict[str, tuple[float, float]] = {}
     for name, (with_, without) in draws[0].items():
@@ -116,12 +116,12 @@ def weighed(draws: Sequence[Drawn]) -> tuple[Drawn, Drawn]:
             with_ - without,
             median(one - other for one, other in pairs),
         )
-        is_one = abs(middle) > max(noise, least) and middle * first > 0
+        is_one = len(draws) > 1 and abs(middle) > max(noise, least) and middle * first > 0
         (changed if is_one else chance)[name] = (middle if is_one else first), noise
     return changed, chance
 
 
-def compared(forks: Forks, left: Sequence[ForkedAct], draw: int) -> Drawn:
+def compared(forks: Forks, left: Sequence[ForkedAct], draw: int) -> FigurePairs:
     """Every figure of a draw, with acts and without them."""
     one, other = (figures_of(moments, is_drive=forks.is_drive) for moments in forks.both(left, draw))
     return {name: (one[name], other[name]) for name in one if name in other}
@@ -153,7 +153,7 @@ def judged_without(forks: Forks, left: Sequence[ForkedAct], draws: Collection[in
 
 
 def _watched(
-    forks: Forks, fork: Fork, moments: Sequence[Moment], acts: Sequence[DriveAct]
+    forks: Forks, fork: TrialFork, moments: Sequence[Moment], acts: Sequence[DriveAct]
 ) -> tuple[float, Mapping[str, str]]:
     """What acts are worth on a drive that went on so from a fork, in weights of events, and what became of each
     kind of event."""

@@ -13,11 +13,12 @@ out, the driver draws as for one, so that the answers to later ones stay what th
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+import os
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from copy import deepcopy
 from dataclasses import dataclass
-from itertools import chain, pairwise, zip_longest
+from itertools import chain, islice, pairwise, zip_longest
 from math import inf
 from typing import Any
 
@@ -46,7 +47,7 @@ MOST_ACTS = 40
 
 
 @dataclass(slots=True)
-class Fork:
+class TrialFork:
     """The trial at one instant, which stays as it is."""
 
     world: CoSimulation
@@ -66,7 +67,7 @@ class ForkedAct:
     time_s: float
     records: list[CommandRecord]
     acts: list[DriveAct]
-    fork: Fork
+    fork: TrialFork
 
     @property
     def words(self) -> str:
@@ -120,7 +121,7 @@ class Forks(TrialObserver):
         """Acts that are too many to be measured."""
         self.untouched: tuple[Moment, ...] = ()
         """The do-nothing run from the beginning."""
-        self._forks: list[Fork] = []
+        self._forks: list[TrialFork] = []
         self._given = 0
         self._seen: dict[tuple[int, frozenset[int], int], list[Moment]] = {}
 
@@ -178,21 +179,36 @@ class Forks(TrialObserver):
     def both(self, left: Sequence[ForkedAct], draw: int) -> tuple[list[Moment], list[Moment]]:
         """What was driven from the fork of the first of some acts on, with and without them; draw 0 is the recorded
         one."""
-        fork, gone = left[0].fork, frozenset(act.step for act in left)
-        until_s = min(
-            self.moments[-1].time_s + ROUNDING_S, left[-1].time_s + (FOLLOWED_S if self.is_drive else inf)
-        )
-        wanted = [
-            (fork.at, without, draw)
-            for without in (frozenset[int](), gone)
-            if (without or draw) and (fork.at, without, draw) not in self._seen
-        ]
-        runs = [self.driving(fork, without, draw, until_s) for _, without, _ in wanted]
-        self._seen.update(zip(wanted, together(runs), strict=True))
-        mine = self._seen.get((fork.at, frozenset(), draw), self.moments[fork.at :])
-        return [moment for moment in mine if moment.time_s <= until_s], self._seen[fork.at, gone, draw]
+        self.drive([left], draw)
+        at, until_s = left[0].fork.at, self._until_s(left)
+        mine = self._seen.get((at, frozenset(), draw), self.moments[at:])
+        return [moment for moment in mine if moment.time_s <= until_s], self._seen[at, _steps(left), draw]
 
-    def driving(self, fork: Fork, without: frozenset[int], draw: int, until_s: float) -> Iterator[Sequence[Moment]]:
+    def drive(self, several: Iterable[Sequence[ForkedAct]], draw: int) -> None:
+        """Drives on, with some acts and without them and so on, what has not been driven: as many at the same time
+        as there are cores."""
+        wanted = {
+            (left[0].fork.at, gone, draw): (left, gone)
+            for left in several
+            for gone in (frozenset[int](), _steps(left))
+            if (gone or draw) and (left[0].fork.at, gone, draw) not in self._seen
+        }
+        left_over = iter(wanted.items())
+        while some := dict(islice(left_over, os.cpu_count() or 1)):
+            runs = [self.driving(left[0].fork, gone, draw, self._until_s(left)) for left, gone in some.values()]
+            self._seen.update(zip(some, together(runs), strict=True))
+
+    def length_s(self, left: Sequence[ForkedAct]) -> float:
+        """For how long acts are followed."""
+        return self._until_s(left) - left[0].time_s
+
+    def _until_s(self, left: Sequence[ForkedAct]) -> float:
+        """To the end of the trial, on a drive only for some time."""
+        return min(self.moments[-1].time_s + ROUNDING_S, left[-1].time_s + (FOLLOWED_S if self.is_drive else inf))
+
+    def driving(
+        self, fork: TrialFork, without: frozenset[int], draw: int, until_s: float
+    ) -> Iterator[Sequence[Moment]]:
         """Drives on from a fork without some acts, second by second; gives nothing while others may go on."""
         gone = self.commands(without)
         left: list[CommandRecord] = list(self.session.world.cockpit.given[fork.given :])
@@ -217,12 +233,16 @@ class Forks(TrialObserver):
     def _fork(self) -> None:
         world, tracker = self.session.world.branch(), deepcopy(getattr(self.session, "tracker", None))
         self._ends.callback(world.close)
-        self._forks.append(Fork(world, len(self.moments) - 1, len(self.session.world.cockpit.given), tracker))
+        self._forks.append(TrialFork(world, len(self.moments) - 1, len(self.session.world.cockpit.given), tracker))
 
 
 def together(drives: Sequence[Iterator[Sequence[Moment]]]) -> list[list[Moment]]:
     """What drives come to that go on at the same time, in their order."""
     return [list(chain.from_iterable(parts)) for parts in zip(*zip_longest(*drives, fillvalue=()), strict=True)]
+
+
+def _steps(left: Iterable[ForkedAct]) -> frozenset[int]:
+    return frozenset(act.step for act in left)
 
 
 def _draws(record: CommandRecord) -> int:

@@ -16,7 +16,7 @@ from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker
 from automotive_cosim.drives.judge import BACK, CHANCE_S, judge
-from automotive_cosim.drives.settings import STAGE_S
+from automotive_cosim.drives.settings import NOTHING, STAGE_S
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.errors import CosimError, UserError
@@ -89,19 +89,14 @@ def _is_due(event: DriveEvent) -> bool:
 
 def with_times(space: Space) -> Space:
     """The space, in which what is staged comes at several instants, if it does not say when."""
-    names = {each.name for each in space.factors}
-    if not is_staged(space) or "stage_s" in names:
+    levels = {each.name: set(each.levels) for each in space.factors}
+    if "stage_s" in levels or levels.get("stage", {NOTHING}) == {NOTHING}:
         return space
     return replace(space, factors=(*space.factors, FactorChoices("stage_s", TIMES_S)))
 
 
-def is_staged(space: Space) -> bool:
-    """Whether a space stages something."""
-    return any(each.name == "stage" and set(each.levels) != {"nothing"} for each in space.factors)
-
-
 @dataclass(slots=True)
-class Screen:
+class DueScreen:
     """Knows, or tries, whether anything comes due at a point; what was tried is kept in the search's folder."""
 
     space: Space
@@ -111,6 +106,8 @@ class Screen:
     tried: int = 0
     """Drives since this start."""
     _known: dict[str, str] = field(default_factory=dict)
+    _never: list[Mapping[str, FactorValue]] = field(default_factory=list)
+    """What cannot come about where."""
 
     def __post_init__(self) -> None:
         """Reads what is known."""
@@ -126,6 +123,8 @@ class Screen:
         """Why nothing comes due at a point; empty if something does, or if it cannot be run."""
         if not self.screens:
             return ""
+        if any(fixed.items() <= point.items() for fixed in self._never):
+            return "it does not come about there"
         try:
             job = job_of(self.plan, trial_of(point))
         except UserError:
@@ -167,7 +166,8 @@ class Screen:
             if due is not None:
                 there.append(due)
             else:
-                yield f"{_words(fixed)}: {self._told(points)}; {self._mended(points)}"
+                yield f"{', '.join(map(str, values))}: {self._told(points)}; {self._mended(points)}"
+                self._never.append(fixed)
         if combined and not there:
             raise UserError(
                 "nothing comes due anywhere in this space, so that it says nothing about any agent; mend it"
@@ -181,13 +181,13 @@ class Screen:
                 self.space = nominal_at(self.space, near)
                 yield f"the nominal point has {changed}: as written, nothing is due there"
 
-    def _told(self, points: list[SearchPoint]) -> str:
+    def _told(self, points: Sequence[SearchPoint]) -> str:
         reasons = [self.why_not(point) for point in points]
         counts = {reason: reasons.count(reason) for reason in reasons}
         parts = ", ".join(f"{reason} ({count})" for reason, count in counts.items())
         return f"nothing came due in {counted(len(points), 'drive')} without an agent: {parts}"
 
-    def _mended(self, points: list[SearchPoint]) -> str:
+    def _mended(self, points: Sequence[SearchPoint]) -> str:
         for name, value in MENDS:
             if any(self.is_due({**point, name: value}) for point in points[:2]):
                 return f"with {said(name, value)} it does: set that, or leave it out"
@@ -208,13 +208,9 @@ def nominal_at(space: Space, point: SearchPoint) -> Space:
     return replace(
         space,
         factors=tuple(
-            replace(each, nominal=float(point[each.name]))
+            replace(each, nominal=round(float(point[each.name])) if each.whole else float(point[each.name]))
             if isinstance(each, FactorRange)
             else replace(each, values=tuple(dict.fromkeys((point[each.name], *each.values))))
             for each in space.factors
         ),
     )
-
-
-def _words(fixed: Mapping[str, FactorValue]) -> str:
-    return ", ".join(str(value) for value in fixed.values())

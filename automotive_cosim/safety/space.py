@@ -169,8 +169,6 @@ class Space:
     """The kind of event, or words of what the road tells, that shows that it has happened."""
     sources: tuple[str, ...] = ()
     """Where the situation and its figures come from; the rest of the ranges is our choice."""
-    note: str = ""
-    """What to know before it is searched."""
 
     @property
     def nominal(self) -> SearchPoint:
@@ -219,7 +217,6 @@ class _SpaceTable:
     about: str = ""
     occurs: str = ""
     sources: tuple[str, ...] = ()
-    note: str = ""
 
 
 def space_file(name: str) -> Path:
@@ -261,7 +258,7 @@ def read_space(path: Path) -> Space:
             raise UserError(f"{document.refused(('failure', 'events'), 'has an unknown kind')}: {unknown}")
     kinds = dict.fromkeys(kind for name in table.failure.events for kind in BRINGS.get(name, (name,)))
     rule = replace(table.failure, events=tuple(kinds))
-    return Space(made, rule, table.about, table.occurs, table.sources, table.note)
+    return Space(made, rule, table.about, table.occurs, table.sources)
 
 
 def _factor(document: Document, name: str, given: Any) -> Factor:

@@ -83,13 +83,9 @@ def _minutes(rows: Sequence[DriveTrialRow]) -> str:
     return counted(most, "minute") if least == most else f"{least} to {most} minutes"
 
 
-Tried = Mapping[str, Mapping[str, Sequence[float]]]
-"""By attribute of the domain and its value: trials, hours and kilometres; none of what was never tried."""
-
-
-def tried(subject: Subject) -> Tried:
-    """Each attribute of the domain with each of its values, those without a trial too; of places and languages,
-    those of the run alone."""
+def tried(subject: Subject) -> Mapping[str, Mapping[str, Sequence[float]]]:
+    """By attribute of the domain and its value, of places and languages those of the run alone: trials, hours and
+    kilometres; none of what was never tried."""
     every: dict[str, dict[str, list[float]]] = {}
 
     def add(

@@ -109,8 +109,6 @@ def _effect(point: DecisionPoint, number: int, policies: str) -> ActEffect:
         {name: (getattr(one, of), getattr(other, of)) for name, of in COMPARED.items()} for one, other in pairs
     ]
     changed, chance = weighed(draws)
-    if len(draws) == 1:  # which cannot be told from chance
-        changed, chance = {}, changed
     names = f" ({policies})" if policies else ""
     words = f"{point.id}: alternative {number + 1}{names} instead of the kept route"
     words += f", in no average: {decision.excluded}" if decision.excluded else ""
