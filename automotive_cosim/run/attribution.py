@@ -140,8 +140,8 @@ def _redrawn(forks: Forks, several: Sequence[Sequence[ForkedAct]], left_s: float
     draws = {number: 0 for number, left in enumerate(several) if _moves(forks, left)}
     for draw in range(1, REDRAWS + 1):
         for number in draws:
+            draws[number] += left_s > 0
             left_s -= 2 * forks.length_s(several[number])
-            draws[number] += left_s >= 0
         forks.drive([several[number] for number, drawn in draws.items() if drawn == draw], draw)
     steps = [[act.step for act in left] for left in several]
     return [without(forks, some, draws.get(number, 0)) for number, some in enumerate(steps)], left_s

@@ -398,6 +398,8 @@ def sentence(found: Hunt, agent: str) -> str:
         told_first += (
             f" From {counted(len(found.minimal), 'minimal failure')}." if found.minimal else " None reduced."
         )
+    if any(not each.changed for each in found.minimal):
+        told_first = f"{agent} fails with everything nominal. Beside that, {told_first}"
     if bound.upper is None:
         return told_first
     where = "Where something is due in this space, the failure rate" if empty else "The failure rate in this space"

@@ -163,6 +163,7 @@ def test_a_nominal_point_that_fails_is_a_finding_with_what_passes_beside_it() ->
     assert minimal.beside in ("passes with driver calm", "passes with driver hurried")
     assert all(minimal.covers(SPACE, each.point) for each in found.samples if each.outcome.failed)
     assert too_many(found, 64) == "it fails with everything nominal"
+    assert sentence(found, "me").startswith("me fails with everything nominal. Beside that, me failed in ")
     (alone,) = searched(of=lambda point: -1.0).minimal
     assert (alone.neighbour, alone.beside) == (None, "")
     with pytest.raises(UserError, match="the nominal point is not judged"):
