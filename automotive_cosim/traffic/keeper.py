@@ -151,7 +151,7 @@ class _Keeper:
 def started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
     """What ``RemoteProcess.start`` does, by a copy from the keeper if there is one; raises like it."""
     if setup.outputs is None and setup.flow_s is None and setup.scenario.config.is_absolute():
-        with suppress(ClosedError, OSError):  # it has ended meanwhile
+        with suppress(ClosedError, OSError, SetupError):  # there is none, or not one of one's own
             return _copied(setup, progress, timeout_s)
     return RemoteProcess.start(setup, progress, timeout_s)
 
@@ -258,6 +258,10 @@ def _connected() -> socket.socket:
     return connection
 
 
+_CHILDREN: list[subprocess.Popen[bytes]] = []
+"""Those that were started, which outlive this process and are not waited for."""
+
+
 def _start(minutes: float) -> None:
     """Starts a keeper, and waits until it listens or has ended, as a second one does."""
     with tempfile.TemporaryFile() as ready:
@@ -270,6 +274,7 @@ def _start(minutes: float) -> None:
             stderr=subprocess.DEVNULL,
             start_new_session=True,
         )
+        _CHILDREN.append(popen)
         while popen.poll() is None and not os.fstat(ready.fileno()).st_size:
             time.sleep(0.02)
 
