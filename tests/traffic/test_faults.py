@@ -355,6 +355,8 @@ def own_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     yield keeper._home()
     with suppress(SetupError):
         keeper.keep(0)
+    while keeper._CHILDREN:
+        keeper._CHILDREN.pop().wait(10)
 
 
 def test_later_commands_fork_from_what_a_keeper_has_warmed_and_drive_alike(
