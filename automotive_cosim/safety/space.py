@@ -322,6 +322,8 @@ UNITS = {"_mm_h": "mm/h", "_min": "min", "_m": "m", "_s": "s", "_c": "°C"}
 
 def label_of(name: str) -> tuple[str, str]:
     """A factor's name in words, and its unit; empty without one."""
+    if name == "stage_s":  # beside the factor ``stage``
+        return "stage time", "s"
     end = next((end for end in UNITS if name.endswith(end)), "")
     return name.removesuffix(end).replace("_", " "), UNITS.get(end, "")
 
