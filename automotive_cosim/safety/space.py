@@ -165,8 +165,6 @@ class Space:
     rule: FailureRule = field(default_factory=FailureRule)
     about: str = ""
     """What happens, for human readers."""
-    occurs: str = ""
-    """The kind of event, or words of what the road tells, that shows that it has happened."""
     sources: tuple[str, ...] = ()
     """Where the situation and its figures come from; the rest of the ranges is our choice."""
 
@@ -215,7 +213,6 @@ class _SpaceTable:
     factors: dict[str, Any]
     failure: FailureRule = field(default_factory=FailureRule)
     about: str = ""
-    occurs: str = ""
     sources: tuple[str, ...] = ()
 
 
@@ -258,7 +255,7 @@ def read_space(path: Path) -> Space:
             raise UserError(f"{document.refused(('failure', 'events'), 'has an unknown kind')}: {unknown}")
     kinds = dict.fromkeys(kind for name in table.failure.events for kind in BRINGS.get(name, (name,)))
     rule = replace(table.failure, events=tuple(kinds))
-    return Space(made, rule, table.about, table.occurs, table.sources)
+    return Space(made, rule, table.about, table.sources)
 
 
 def _factor(document: Document, name: str, given: Any) -> Factor:
