@@ -112,21 +112,22 @@ def film(actors, path):
     """The policies side by side, with the same wishes in the same traffic."""
     envs, pages = gym.make_vec("AutomotiveCosim/Flat-v0", num_envs=2, render_mode="rgb_array", **SMALL), []
     for seed in range(UNSEEN + 1, UNSEEN + 4):
-        page, ends = Image.new("RGB", (1080, 372), "white"), ["", ""]
+        screens, ends = [None, None], ["", ""]
         given = {"seed": [seed] * 2, "options": {"traffic_seed": UNSEEN}}
         steps = played(envs, lambda seen: np.stack([each(seen)[n] for n, each in enumerate(actors)]), **given)
         while not all(ends):
             *_, over, _, solved = next(steps)
-            page = page.copy()
+            pages += [page := Image.new("RGB", (1080, 372), "white")]
             text = ImageDraw.Draw(page).text
             for n, name in enumerate(("untrained", "trained")):
                 if not ends[n]:
-                    page.paste(Image.fromarray(envs.render()[n]).resize((528, 297)), (6 + 540 * n, 40))
+                    screens[n] = Image.fromarray(envs.render()[n]).resize((528, 297))
                     ends[n] = (": solved" if solved[n] else ": not solved") if over[n] else ""
-                    text((12 + 540 * n, 342), name + ends[n], "black", font_size=20)
                     goal = envs.envs[n].unwrapped.episode.observation.goal
-                    text((12, 8), f"“{goal}”", "black", font_size=20)
-            pages += [page] * (3 if all(ends) else 1)
+                page.paste(screens[n], (6 + 540 * n, 40))
+                text((12 + 540 * n, 342), name + ends[n], "black", font_size=20)
+            text((12, 8), f"“{goal}”", "black", font_size=20)
+        pages += [page, page]
     envs.close()
     pages[0].save(path, save_all=True, append_images=pages[1:], duration=1000, loop=0, quality=60, method=6)
 
@@ -140,8 +141,7 @@ if __name__ == "__main__":
     while (minutes := (time.monotonic() - began) / 60) < float(MINUTES):
         rows = list(islice(steps, STEPS))
         update(actor, critic, rows, envs.now[0])
-        rounds += 1
-        if rounds % 10 == 1:
+        if (rounds := rounds + 1) % 10 == 1:
             won, over = (sum(int(row[at].sum()) for row in rows) for at in (7, 5))
             print(f"{minutes:4.1f} min, {rounds * STEPS * COUNT} steps: {won} of {over} solved", flush=True)
     print("after:", measured(envs, actor), flush=True)
