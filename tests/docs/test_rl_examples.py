@@ -48,7 +48,8 @@ def test_the_one_that_learns_measures_and_films_two_policies(monkeypatch, tmp_pa
     exec(compile(text, LEARNS, "exec"), {"__name__": "__main__"})
     told = capsys.readouterr().out.splitlines()
     assert [line.partition(":")[0] for line in told if "unseen" in line] == ["before", "after"]
-    assert Image.open(tmp_path / "ten_minutes.webp").n_frames > 6
+    with Image.open(tmp_path / "ten_minutes.webp") as film:
+        assert film.n_frames > 6
 
 
 @pytest.mark.slow
