@@ -10,7 +10,7 @@ line says ``format`` and what is run; every other line has one of these keys:
     vehicles   [[number, id, class, length, width], …]                    before a vehicle is first seen
     at_s       one second of the drive:
                seen       [[number, …], [x, …], [y, …], [heading, …], [speed, …], [signals, …]], in cm, tenths of a
-                          degree and cm/s, each as ``Rows`` says; x and y of the front bumper; the car under test is
+                          degree and cm/s, as ``SeenColumns`` says; x and y of the front bumper; the car under test is
                           ``ego``; signals are the bits of ``contracts.SumoSignal``
                lights     {light: state} of those that have changed; a lane's ``place`` is that of its letter
                speed_kmh, limit_kmh, speed_unit (of the signs), road, local_time, sun_deg (elevation; null without a
@@ -59,7 +59,7 @@ SeenRow = list[Any]
 """``[number, x, y, heading, speed, signals]`` in m, degrees and m/s."""
 
 
-class Rows:
+class SeenColumns:
     """The vehicles of successive seconds as columns of small whole numbers, which take half the room.
 
     Numbers are told as steps from the one before. A vehicle that was also seen the second before is told by what
@@ -240,7 +240,7 @@ def read_road(path: Path) -> Iterator[Json]:
             if (head := file.read(2)) and head != PACKED:
                 raise ValueError("it is not packed")
         with opened(path, growing=True) as file:
-            form, rows = None, Rows()
+            form, rows = None, SeenColumns()
             for entry in json_lines(file, bounds.ROAD_VALUES, growing=True):
                 form = form or entry.get("format")
                 if form not in (FORMAT, FORMER):

@@ -32,7 +32,7 @@ from automotive_cosim.formats.writing import growing, make_folder
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.road import FORMAT, Rows
+from automotive_cosim.run.road import FORMAT, SeenColumns
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
@@ -150,7 +150,7 @@ class RoadWriter:
         self._lights: dict[str, str] = {}
         self._weather: Json | None = None
         self._numbers: dict[str, int] = {}
-        self._rows = Rows()
+        self._rows = SeenColumns()
         self._line(
             {
                 "format": FORMAT,

@@ -14,7 +14,7 @@ from automotive_cosim.contracts import GroundArea, GroundKind, LaneShape, RoadNe
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import ROAD
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.road import Rows, read_record, read_road
+from automotive_cosim.run.road import SeenColumns, read_record, read_road
 from automotive_cosim.run.road_recorder import RoadRecorder, RoadWriter, along
 from automotive_cosim.run.trial import run_trial
 
@@ -70,7 +70,7 @@ def test_another_file_is_refused_in_one_line(tmp_path, content):
 
 def test_the_seconds_of_a_drive_come_back_as_they_were_told_and_so_do_those_of_the_former_format(tmp_path):
     rng = np.random.default_rng(0)
-    seconds, packer = [], Rows()
+    seconds, packer = [], SeenColumns()
     for _ in range(50):  # vehicles come, go and come again, turn through north and stand
         seen = sorted(rng.choice(30, 12, replace=False).tolist())
         seconds.append(
