@@ -10,8 +10,8 @@ line says ``format`` and what is run; every other line has one of these keys:
     vehicles   [[number, id, class, length, width], …]                    before a vehicle is first seen
     at_s       one second of the drive:
                seen       [[number, …], [x, …], [y, …], [heading, …], [speed, …], [signals, …]], in cm, tenths of a
-                          degree and cm/s, as ``SeenColumns`` says; x and y of the front bumper; the car under test is
-                          ``ego``; signals are the bits of ``contracts.SumoSignal``
+                          degree and cm/s, as ``SeenColumns`` says; x and y of the front bumper; the car under test
+                          is ``ego``; signals are the bits of ``contracts.SumoSignal``
                lights     {light: state} of those that have changed; a lane's ``place`` is that of its letter
                speed_kmh, limit_kmh, speed_unit (of the signs), road, local_time, sun_deg (elevation; null without a
                place), weather_code (WMO)
