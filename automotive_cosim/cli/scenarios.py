@@ -18,7 +18,7 @@ from automotive_cosim.cli.options import AsJson, print_json, tell_opening
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
+from automotive_cosim.osm.settings import ImportOptions
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -292,7 +292,6 @@ def import_scenario(
 
 
 @app.command("download")
-@takes(DownloadLimits, but=("tries",))
 def download_map(
     bbox: Annotated[
         Area,
@@ -312,14 +311,13 @@ def download_map(
         ),
     ],
     out: Annotated[Path, typer.Option(help="File to create, for `scenarios import`.")] = Path("map.osm"),
-    **settings: Any,
 ) -> None:
     """Fetch the roads of an area from an Overpass server of your choice."""
     from automotive_cosim.osm.folder import ATTRIBUTION
     from automotive_cosim.osm.overpass import download
 
     with _progress() as tell:
-        found = download(endpoint, bbox, out, filled(DownloadLimits, settings), tell=tell)
+        found = download(endpoint, bbox, out, tell=tell)
     dated = f", as of {found.map_date}" if found.map_date else ""
     typer.echo(f"{out}: {megabytes_in_words(found.size_mb)}{dated}\n{ATTRIBUTION}")
     if found.note:

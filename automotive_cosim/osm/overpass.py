@@ -28,7 +28,6 @@ from automotive_cosim.errors import ImportMapError
 from automotive_cosim.formats.writing import copy, drafted
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.land_cover import TAGS
-from automotive_cosim.osm.settings import DownloadLimits
 
 LARGEST_KM2 = 2500.0
 """A large city. Larger areas are available as PBF extracts."""
@@ -44,6 +43,17 @@ LONGEST_PAUSE_S = 120.0
 """Pause before the second attempt; doubled each time, unless the server says how long."""
 
 PIECE_BYTES = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class DownloadLimits:
+    """How patient a download is."""
+
+    timeout_s: float = 180.0
+    """Seconds without an answer before giving up."""
+    tries: int = 4
+    """Maximum number of requests to a busy server."""
+    size_mb: float = 500.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,9 +240,7 @@ def _judge(file: Path, endpoint: str) -> Download:
         )
     remark = re.search(r"<remark>(.*?)</remark>", tail, re.DOTALL)
     if remark:
-        raise ImportMapError(
-            f"the server stopped: {_words(remark[1])}; give a smaller --bbox or a longer --timeout"
-        )
+        raise ImportMapError(f"the server stopped: {_words(remark[1])}; give a smaller --bbox")
     if not tail.rstrip().endswith("</osm>"):
         raise ImportMapError(f"the answer from {endpoint} is truncated after {size / 1e6:.1f} MB; try again")
     note = re.search(r"<note>(.*?)</note>", head, re.DOTALL)

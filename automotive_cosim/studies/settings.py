@@ -93,8 +93,6 @@ class RerouteSettings(DrivenSettings):
     """Shares of the other cars that reroute, 0 to 1; each is warmed up separately."""
     ages_s: Annotated[tuple[Annotated[float, Ge(0), Le(OLDEST_NEWS_S)], ...], MinLen(1)] = (0.0,)
     """Ages of the traffic news in seconds, by which the alternative route is selected."""
-    driver: Annotated[str, SCENARIOS_OWN] = ""
-    """Driver profile of the ego."""
     compliance: Annotated[tuple[CarShare, ...], MinLen(1)] = (1.0,)
     """Probabilities that the driver follows the advice, at the same decisions; most tables use only the first."""
     policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
@@ -151,8 +149,6 @@ class CongestionSettings(DrivenSettings):
     warm-up."""
     share: Annotated[CarShare | None, SCENARIOS_OWN] = None
     """Share of the cars with SUMO's rerouting device."""
-    corridor: Annotated[str, Option(default="the first")] = ""
-    """Trip along which the time-space diagrams go."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

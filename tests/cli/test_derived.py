@@ -21,11 +21,10 @@ from automotive_cosim.doors.settings import A2aSettings, McpSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.episode.settings import EpisodeSettings
 from automotive_cosim.errors import UserError
-from automotive_cosim.exchange.settings import ExportFormats
 from automotive_cosim.formats.annotations import OneOf, Option
 from automotive_cosim.formats.docs import inherited_field_docs
 from automotive_cosim.formats.options import option
-from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
+from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.proof.settings import ProofSettings
 from automotive_cosim.publish.settings import VerifySettings
 from automotive_cosim.report.settings import CompareSettings, PlaybackSettings, ScreensSettings
@@ -57,13 +56,11 @@ COMMANDS = (
     ("search", SearchSettings, set()),
     ("search", ExecutorSettings, set()),
     ("scenarios import", ImportOptions, set()),
-    ("scenarios download", DownloadLimits, {"tries"}),
     ("tasks validate", ProofSettings, set()),
     ("mcp", McpSettings, set()),
     ("a2a", A2aSettings, set()),
     ("serve", ServeSettings, set()),
     ("bench", BenchSettings, set()),
-    ("export", ExportFormats, set()),
     ("compare", CompareSettings, set()),
     ("replay", PlaybackSettings, set()),
     ("show screens", ScreensSettings, set()),

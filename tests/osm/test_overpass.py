@@ -16,8 +16,7 @@ from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm import extract
 from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, download, query
-from automotive_cosim.osm.settings import DownloadLimits
+from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, DownloadLimits, download, query
 
 AREA = Area(1.58, 48.29, 1.64, 48.32)
 NOTE = "The data included in this document is from www.openstreetmap.org. The data is made available under ODbL."

@@ -110,7 +110,7 @@ def depart(job: StudyJob, simulation: Forked) -> RemoteTraffic:
     seed = int(np.random.default_rng([*job.entropy, 0]).integers(2**31))
     plan = EgoPlan(
         job.trip,
-        job.plan.driver or scenario.ego.driver,
+        scenario.ego.driver,
         seed,
         scenario.weather,
         scenario.start,

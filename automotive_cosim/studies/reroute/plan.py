@@ -16,7 +16,6 @@ from automotive_cosim.studies.plan import check_edges, check_values, driven_at, 
 from automotive_cosim.studies.reroute.policies import AGENT, parse_policy
 from automotive_cosim.studies.reroute.rows import TripRow
 from automotive_cosim.studies.settings import RerouteSettings
-from automotive_cosim.traffic.profiles import profile
 
 EQUILIBRIUM_GAP = 0.01
 """Relative gap below which a dynamic user assignment counts as converged."""
@@ -54,8 +53,6 @@ class StudyPlan(RerouteSettings):
                     "policy 'agent:human' needs a person, but a study runs unattended; choose another agent"
                 )
             make_agent(*named(agent))
-        if self.driver:
-            profile(self.driver)
         if self.ego_class and not re.fullmatch(r"[A-Za-z0-9_.]+(/[A-Za-z0-9_.]+)?", self.ego_class):
             raise UserError(f"--ego-class is {self.ego_class!r}; give an emission class of SUMO, as Energy/default")
         scenario = self.scene(0.0)
