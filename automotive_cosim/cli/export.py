@@ -21,7 +21,7 @@ def export(
     trial: Annotated[
         Path,
         typer.Argument(
-            help="Folder of `run` or `drive` with --out, or of one trial in pictures/ of `eval`.",
+            help="Folder of `run` with --out, or of one trial in pictures/ of `eval`.",
             show_default=False,
         ),
     ],
@@ -53,20 +53,18 @@ def export(
     trace = trace_name(recording) if "osi" in formats else ""
     try:
         folder = make_folder(out) if out else make_folder(trial, "exchange")
-        for name, word, write in (
-            (ROAD, "opendrive", _write_road),
-            *(
-                (SCENARIO, word, partial(write_openscenario, version=version, road=road))
-                for word, version in OPENSCENARIO.items()
-            ),
-            (f"{trace}.osi", "osi", partial(write_osi, road=road)),
-            (f"{trace}.mcap", "osi", partial(write_osi, road=road)),
-            (f"{TABLE}.trj", "ssam", write_trajectories),
-            (FCD, "fcd", write_fcd),
-            (f"{TABLE}.csv", "csv", write_csv),
-            (f"{TABLE}.parquet", "parquet", write_parquet),
+        versions = [version for word, version in OPENSCENARIO.items() if word in formats]
+        for name, wanted, write in (
+            (ROAD, "opendrive" in formats, _write_road),
+            (SCENARIO, bool(versions), partial(write_openscenario, version="".join(versions[-1:]), road=road)),
+            (f"{trace}.osi", "osi" in formats, partial(write_osi, road=road)),
+            (f"{trace}.mcap", "osi" in formats, partial(write_osi, road=road)),
+            (f"{TABLE}.trj", "ssam" in formats, write_trajectories),
+            (FCD, "fcd" in formats, write_fcd),
+            (f"{TABLE}.csv", "csv" in formats, write_csv),
+            (f"{TABLE}.parquet", "parquet" in formats, write_parquet),
         ):
-            if word in formats:
+            if wanted:
                 write(recording, folder / name)
                 written.append(name)
     except OSError as error:

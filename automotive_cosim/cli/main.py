@@ -23,7 +23,6 @@ from automotive_cosim.cli import (
     bench,
     compare,
     doctor,
-    drive,
     evaluate,
     export,
     mcp,
@@ -58,7 +57,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command(rich_help_panel=RUN)(run.run)
-app.command(rich_help_panel=RUN)(drive.drive)
 app.command("eval", rich_help_panel=RUN)(evaluate.evaluate)
 app.command(rich_help_panel=RUN)(search.search)
 app.command(rich_help_panel=READ)(serve.serve)

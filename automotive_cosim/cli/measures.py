@@ -17,7 +17,7 @@ def measures(
     record: Annotated[
         Path,
         typer.Argument(
-            help="Folder of `run`, `drive` or `eval`, of one of its trials in pictures/, or a road.jsonl.gz.",
+            help="Folder of `run` or `eval`, of one of its trials in pictures/, or a road.jsonl.gz.",
             show_default=False,
         ),
     ],

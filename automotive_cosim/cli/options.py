@@ -97,14 +97,10 @@ Seed = Annotated[
         parser=partial(number_in, int, (Ge(0), Le(MOST_SEED))),
     ),
 ]
-AgentName = Annotated[
-    str,
-    typer.Option(
-        "--agent",
-        help="Agent; `agents` lists them; package.module:Class is one of your own, "
-        "a2a:http://HOST:PORT one that speaks A2A.",
-    ),
-]
+AGENT_HELP = (
+    "Agent; `agents` lists them; package.module:Class is one of your own, a2a:http://HOST:PORT one that speaks A2A."
+)
+AgentName = Annotated[str, typer.Option("--agent", help=AGENT_HELP)]
 ModelName = Annotated[
     str,
     typer.Option(

@@ -61,9 +61,7 @@ def _safety(folder: Path, agent: str) -> None:
     typer.echo(f"{pdf} written" if pdf else f"no PDF: {install_hint('reports')}")
 
 
-TrialFolder = Annotated[
-    Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)
-]
+TrialFolder = Annotated[Path, typer.Argument(help="Results folder of `run` or `eval`.", show_default=False)]
 TrialId = Annotated[
     str,
     typer.Argument(

@@ -1,4 +1,4 @@
-"""``automotive-cosim run``: runs, shows, judges and records one episode."""
+"""``automotive-cosim run``: runs, shows, judges and records one trial."""
 
 from __future__ import annotations
 
@@ -6,15 +6,16 @@ from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
 from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.options import (
-    AgentName,
+    AGENT_HELP,
     AsJson,
+    DriveChanges,
     Force,
     LimitSettings,
     ModelName,
@@ -28,6 +29,7 @@ from automotive_cosim.contracts.given import PLACE, GeoInput
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.settings import ANYWHERE, DEFAULT_TASK, EpisodeSettings
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.formats.options import option
 from automotive_cosim.run.settings import SingleSettings
 
 if TYPE_CHECKING:
@@ -64,8 +66,9 @@ PAIR_TITLES = ("Knows where it is", "The same agent, place withheld")
 @takes(LimitSettings)
 @takes(EpisodeSettings, but=["seed"])
 @takes(SingleSettings)
+@takes(DriveChanges)
 def run(
-    agent: AgentName = "asurada",
+    agent: Annotated[str, typer.Option(help=AGENT_HELP, show_default="asurada; rule-perfect on a drive")] = "",
     model: ModelName = "rules",
     tasks_from: TasksFrom = None,
     seed: Seed = 0,
@@ -73,7 +76,7 @@ def run(
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
-    """Run one episode: a task, an agent, a seed.
+    """Run one episode or drive: a task or a family of drives, an agent, a seed.
 
     Without options, a car in Paris drives at 80 km/h where 50 is posted, and the agent is to warn the driver.
     """
@@ -81,6 +84,13 @@ def run(
     how = filled(SingleSettings, settings)
     scenario = chosen.get("scenario")
     tell_opening(*filter(None, [scenario]))
+    _check_subject(settings)
+    if how.drive:
+        from automotive_cosim.cli.drive import run_drive
+
+        run_drive(how.drive, agent or "rule-perfect", model, seed, how.out, settings, force=force, as_json=as_json)
+        return
+    agent = agent or "asurada"
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import parts
     from automotive_cosim.episode.own_prompt import instructions
@@ -145,6 +155,18 @@ def run(
     for row in rows:
         if row.error is not None:
             raise InfrastructureError(row.error)
+
+
+def _check_subject(settings: Mapping[str, Any]) -> None:
+    """Refuses options of tasks beside ``--drive``, and those of drives without it."""
+    is_drive = bool(settings["drive"])
+    kinds = (EpisodeSettings, SingleSettings) if is_drive else (DriveChanges,)
+    fits = {"scenario", "drive", "out"}
+    given = [(kind, name) for kind in kinds for name in settings_in(kind, settings)]
+    wrong = [option(kind, name).replace("--gps", "--no-gps") for kind, name in given if name not in fits]
+    if wrong:
+        other = "a task; omit it with" if is_drive else "a drive; give"
+        raise UserError(f"{wrong[0]} is about {other} --drive")
 
 
 def _check_pair(player: Agent, under: Conditions) -> None:

@@ -51,7 +51,7 @@ def frames(folder: Path) -> Iterator[Frame]:
     """
     steps = read_steps(folder)
     if not steps:
-        raise UserError(f"{folder} has no {STEPS}; give a results folder of `automotive-cosim run` or `drive`")
+        raise UserError(f"{folder} has no {STEPS}; give a results folder of `automotive-cosim run`")
     for step in steps:
         yield Frame(
             step["step"],

@@ -121,13 +121,15 @@ class PlanSettings:
 
 @dataclass(frozen=True, slots=True)
 class SingleSettings:
-    """How one episode is run, and where to."""
+    """How one trial is run, and where to."""
 
+    drive: Annotated[str, Option(form="FAMILY")] = ""
+    """Run this drive of ten to thirty minutes instead of a task; `show drives` lists them."""
     without: tuple[str, ...] = ()
     """Parts of the agent to switch off, separated by commas: gps, context, queries, screen, reflection, memory."""
     memory: Path | None = None
     """File in which ASURADA remembers what worked, for later runs."""
-    out: Annotated[Path | None, Option(default="runs/<time>-<task>-<half>-<agent>-seed<seed>")] = None
+    out: Annotated[Path | None, Option(default="runs/<time>-<task or drive>-<agent>-seed<seed>")] = None
     """Folder for the results."""
     pair: bool = False
     """Run the agent twice from the same instant, with its place and without, side by side."""

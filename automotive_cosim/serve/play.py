@@ -319,7 +319,7 @@ class Game(TrialObserver):
             self._tell(state=PlayState.FAILED, error=str(error) or type(error).__name__)
 
     def _practise(self, job: TrialSetup, folder: Path) -> None:
-        """Plays a trial and records it as ``run`` and ``drive`` do."""
+        """Plays a trial and records it as ``run`` does."""
         is_episode = isinstance(job, EpisodeSetup)
         recorder, road = Recorder(job, folder, {}, whole=is_episode), RoadRecorder(folder, job.about)
         everyone = (self, recorder, road, *([Film(folder)] if is_episode else []))  # the person first

@@ -60,7 +60,7 @@ def test_tables_come_as_parquet(cli: Cli, tmp_path: Path) -> None:
 def test_what_was_not_recorded_is_said_in_a_line(cli: Cli, tmp_path: Path) -> None:
     ran = cli("measures", tmp_path)
     assert ran.code == 2
-    assert "has no road.jsonl.gz; `run`, `drive --out`" in ran.err
+    assert "has no road.jsonl.gz; `run` and `eval --pictures all`" in ran.err
 
 
 def test_of_an_evaluation_every_trial_with_a_road_has_its_lines(cli: Cli, tmp_path: Path) -> None:
@@ -84,7 +84,7 @@ def test_of_an_evaluation_export_names_the_trials_with_a_road(cli: Cli, tmp_path
     for name in ("one", "two"):
         (tmp_path / "e/pictures" / name).mkdir(parents=True)
         (tmp_path / "e/pictures" / name / "road.jsonl.gz").touch()
-    ran = cli("export", "--csv", tmp_path / "e")
+    ran = cli("export", tmp_path / "e", "csv")
     told = " ".join(str(ran.err).split())
     assert "is an evaluation; give one of its trials: " in told
     assert "pictures/one, " in told
