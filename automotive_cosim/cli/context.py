@@ -50,8 +50,6 @@ class ContextSettings:
     """Ask Open-Meteo for the weather; if that fails, use the climate."""
     road: str = ""
     """OSM highway value, e.g. motorway, primary, residential."""
-    budget: Annotated[int | None, Ge(1), Le(10**6)] = None
-    """Limit of the text in tokens."""
 
 
 @takes(ContextSettings)
@@ -82,7 +80,7 @@ def context(
     if as_json:
         print_json(_json(found))
     else:
-        typer.echo(found.text() if told.budget is None else found.text(told.budget))
+        typer.echo(found.text())
 
 
 def _check(road: str, folders: Sequence[Path]) -> None:

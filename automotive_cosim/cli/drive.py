@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from automotive_cosim.cli.conditions import given
-from automotive_cosim.cli.derived import filled, settings_in
+from automotive_cosim.cli.derived import settings_in
 from automotive_cosim.cli.options import AsJson, DriveChanges, LimitSettings, print_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import Conditions
@@ -27,6 +27,7 @@ def run_drive(
     model: str,
     seed: int,
     out: Path | None,
+    limited: LimitSettings,
     settings: Mapping[str, Any],
     *,
     force: bool,
@@ -45,8 +46,7 @@ def run_drive(
     from automotive_cosim.run.trial import Limits, run_trial
 
     under = Conditions.named(given(settings))
-    limited = filled(LimitSettings, settings)
-    limits = Limits().of_drives.within(limited.most_tokens, limited.most_seconds)
+    limits = Limits().of_drives.within(limited.tokens, limited.seconds)
     told = instructions(under.prompt)
     budget = AgentSettings(
         under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s, instructions=told
@@ -58,7 +58,7 @@ def run_drive(
         under,
         settings["scenario"] or "",
         DriveSettings(**settings_in(DriveChanges, settings)),
-        limited.most_steps or limits.steps,
+        limited.steps or limits.steps,
         agent=player.name,
         model=player.model,
     )

@@ -23,6 +23,7 @@ from automotive_cosim.cli.options import (
     AsJson,
     DriveChanges,
     LimitSettings,
+    Most,
     TasksFrom,
     print_json,
 )
@@ -47,8 +48,8 @@ if TYPE_CHECKING:
 @takes(RunSettings)
 @takes(Budget)
 @takes(DriveChanges)
-@takes(LimitSettings, but=["most_wall_seconds"])
 def evaluate(
+    most: Most = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
@@ -76,7 +77,7 @@ def evaluate(
     values |= settings_in(EvaluationSettings, settings) | values_of(settings)
     told = settings_in(DriveChanges, settings)
     values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
-    own = _limits(filled(LimitSettings, settings))
+    own = _limits(most or LimitSettings())
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = filled(Budget, settings)
     plan = make_plan(values)
@@ -187,10 +188,12 @@ def _named(tasks: Sequence[str]) -> str:
 
 def _limits(told: LimitSettings) -> Json:
     """The limits of a plan that options set, of tasks and of drives."""
+    if told.wall is not None:
+        raise UserError("--most wall is a limit of `run`; in a plan, agent_s of [limits] is one")
     named = {
-        ("steps", "hard_steps", "drive_steps"): told.most_steps,
-        ("tokens", "drive_tokens"): told.most_tokens,
-        ("model_s", "drive_model_s"): told.most_seconds,
+        ("steps", "hard_steps", "drive_steps"): told.steps,
+        ("tokens", "drive_tokens"): told.tokens,
+        ("model_s", "drive_model_s"): told.seconds,
     }
     return {name: value for names, value in named.items() if value is not None for name in names}
 

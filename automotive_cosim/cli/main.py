@@ -53,6 +53,7 @@ app = typer.Typer(
     name="automotive-cosim",
     help="Agents that operate the cockpit of a car in live SUMO traffic.",
     no_args_is_help=True,
+    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )

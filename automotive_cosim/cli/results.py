@@ -122,7 +122,7 @@ def replay(
     if shown.play or shown.film is not None:
         if episode or as_json:
             raise UserError("--play and --film show the record of one `run`; omit the episode and --json")
-        _show_record(folder, shown.film, shown.speed)
+        _show_record(folder, shown.film)
         return
     if without:
         from automotive_cosim.run.attribution import attribute as measured
@@ -145,7 +145,11 @@ def replay(
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
 
 
-def _show_record(folder: Path, film: Path | None, speed: float) -> None:
+SPEED = 4.0
+"""How many times as fast as recorded ``--play`` and ``--film`` are."""
+
+
+def _show_record(folder: Path, film: Path | None) -> None:
     """Prints a record step by step, at its pace, or writes its screens as an animation."""
     from time import sleep
 
@@ -155,12 +159,12 @@ def _show_record(folder: Path, film: Path | None, speed: float) -> None:
         raise UserError(f"{film} is not an animation; give --film a name ending in .webp or .gif")
     shown = list(frames(folder))
     if film is not None:
-        write_film(shown, film, speed)
+        write_film(shown, film, SPEED)
         typer.echo(f"{film} written, {counted(len(shown), 'step')}")
         return
     before_s = 0.0
     for frame in shown:
-        sleep((frame.since_s - before_s) / speed)
+        sleep((frame.since_s - before_s) / SPEED)
         before_s = frame.since_s
         typer.echo(frame.words)
         typer.echo(f"     {frame.picture}")

@@ -19,6 +19,7 @@ from automotive_cosim.cli.options import (
     Force,
     LimitSettings,
     ModelName,
+    Most,
     Seed,
     TasksFrom,
     print_json,
@@ -63,7 +64,6 @@ PAIR_TITLES = ("Knows where it is", "The same agent, place withheld")
 
 
 @takes_conditions()
-@takes(LimitSettings)
 @takes(EpisodeSettings, but=["seed"])
 @takes(SingleSettings)
 @takes(DriveChanges)
@@ -71,6 +71,7 @@ def run(
     agent: Annotated[str, typer.Option(help=AGENT_HELP, show_default="asurada; rule-perfect on a drive")] = "",
     model: ModelName = "rules",
     tasks_from: TasksFrom = None,
+    most: Most = None,
     seed: Seed = 0,
     force: Force = False,
     as_json: AsJson = False,
@@ -80,7 +81,7 @@ def run(
 
     Without options, a car in Paris drives at 80 km/h where 50 is posted, and the agent is to warn the driver.
     """
-    chosen, limited = settings_in(EpisodeSettings, settings), filled(LimitSettings, settings)
+    chosen, limited = settings_in(EpisodeSettings, settings), most or LimitSettings()
     how = filled(SingleSettings, settings)
     scenario = chosen.get("scenario")
     tell_opening(*filter(None, [scenario]))
@@ -88,7 +89,17 @@ def run(
     if how.drive:
         from automotive_cosim.cli.drive import run_drive
 
-        run_drive(how.drive, agent or "rule-perfect", model, seed, how.out, settings, force=force, as_json=as_json)
+        run_drive(
+            how.drive,
+            agent or "rule-perfect",
+            model,
+            seed,
+            how.out,
+            limited,
+            settings,
+            force=force,
+            as_json=as_json,
+        )
         return
     agent = agent or "asurada"
     from automotive_cosim.agents import AgentSettings, make_agent
@@ -103,7 +114,7 @@ def run(
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
-    limits = Limits().within(limited.most_tokens, limited.most_seconds)
+    limits = Limits().within(limited.tokens, limited.seconds)
     off = parts(how.without)
     under = Conditions.named(given(settings))
 
@@ -119,7 +130,7 @@ def run(
     setup = EpisodeSetup(
         **{"task": _default_task(chosen), **chosen},
         seed=seed,
-        max_steps=limited.most_steps,
+        max_steps=limited.steps,
         conditions=under,
         agent=player.name,
         model=player.model,

@@ -35,11 +35,9 @@ class PlaybackSettings:
     """How a record is shown again, instead of being run again."""
 
     play: bool = False
-    """Print the recorded steps at their pace instead; of `run` alone."""
+    """Print the recorded steps instead, four times as fast; of `run` alone."""
     film: Path | None = None
     """Write the recorded screens as an animation instead, .webp or .gif; of `run` alone."""
-    speed: Annotated[float, Ge(0.1), Le(1000)] = 4.0
-    """How many times as fast as recorded --play and --film are."""
 
 
 @dataclass(frozen=True, slots=True)

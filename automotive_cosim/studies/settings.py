@@ -112,8 +112,6 @@ class RerouteSettings(DrivenSettings):
     """Share of the vehicles present at a decision that must arrive before its futures end."""
     limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
     """Simulated seconds after which a future ends anyway."""
-    equilibrium_gap: float | None = None
-    """Declare that the demand comes from duaIterate with this relative gap."""
     half_width_s: Annotated[Annotated[float, Ge(0.1), Le(3_600)] | None, Option("until")] = None
     """Add seeds until the mean gain is known to within this many seconds."""
     whole_drives: bool = False

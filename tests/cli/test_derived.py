@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.main import app
-from automotive_cosim.cli.options import DriveChanges, LimitSettings
+from automotive_cosim.cli.options import DriveChanges
 from automotive_cosim.doors.settings import A2aSettings, McpSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.episode.settings import EpisodeSettings
@@ -42,7 +42,6 @@ from tests.laws import over
 
 COMMANDS = (
     ("run", EpisodeSettings, {"seed"}),
-    ("run", LimitSettings, set()),
     ("run", SingleSettings, set()),
     ("run", DriveChanges, set()),
     ("eval", EvaluationSettings, {each.name for each in TABLE}),
@@ -50,7 +49,6 @@ COMMANDS = (
     ("eval", PlanSettings, set()),
     ("eval", Budget, set()),
     ("eval", ExecutorSettings, set()),
-    ("eval", LimitSettings, {"most_wall_seconds"}),
     ("search", SearchOrder, set()),
     ("search", SearchSettings, set()),
     ("search", ExecutorSettings, set()),

@@ -91,8 +91,6 @@ def test_bad_input_is_one_line(arguments: tuple[str, ...], message: str) -> None
         ("--speed", "nan"),
         ("--speed", "-1"),
         ("--speed", "inf"),
-        ("--budget", "-1"),
-        ("--budget", "0"),
         ("--weather", "45", "--visibility", "-5"),
         ("--weather", "45", "--visibility", "nan"),
     ],

@@ -497,7 +497,6 @@ def ends(made: Future, at_s: float) -> Future:
         ({"compliance": ()}, "--compliance is empty"),
         ({"compliance": (0.5, 0.5)}, "twice"),
         ({"departures_s": (0.0, 0.0)}, "twice"),
-        ({"equilibrium_gap": 0.05}, "duaIterate"),
         ({"step_s": 5.0}, "--step"),
         ({"policies": ("agent:asurado",)}, "asurada"),
         ({"policies": ("agent:asurada/nothing",)}, "nothing"),

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.reroute.rows import TripRow
 
 
-@takes(RerouteSettings, but=("scenario", "warm_up_s", "limit_s", "agent_steps"))
+@takes(RerouteSettings, but=("scenario", "warm_up_s", "limit_s", "agent_steps", "every_s", "placebo_every"))
 @takes(ExecutorSettings)
 def reroute(
     scenario: Annotated[

@@ -17,7 +17,6 @@ from automotive_cosim.studies.reroute.policies import AGENT, parse_policy
 from automotive_cosim.studies.reroute.rows import TripRow
 from automotive_cosim.studies.settings import RerouteSettings
 
-EQUILIBRIUM_GAP = 0.01
 """Relative gap below which a dynamic user assignment counts as converged."""
 
 AHEAD = "ahead"
@@ -40,11 +39,6 @@ class StudyPlan(RerouteSettings):
             UserError: one does not exist or is out of range.
         """
         check_values(self)
-        if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
-            raise UserError(
-                f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium below "
-                f"{EQUILIBRIUM_GAP:g}; run duaIterate longer, or omit the option"
-            )
         for text in self.policies:
             parse_policy(text)
         for agent in self.agents:
@@ -95,8 +89,6 @@ class StudyPlan(RerouteSettings):
 
     def demand(self) -> str:
         """A description of where the other vehicles' routes come from."""
-        if self.equilibrium_gap is not None:
-            return f"routes from duaIterate, relative gap {self.equilibrium_gap:.2%}"
         told = sorted({job.share for job in self.jobs()})
         drawn = "; every seed redraws the trips" if self.scene(0.0).sumo.redraws_trips else ""
         if told == [0.0]:
