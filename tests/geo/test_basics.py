@@ -136,6 +136,7 @@ def test_a_town_anywhere_has_its_basics(
     law = context.place.law
     assert law is not None
     side = "left" if code in LEFT.split() else "right"
+    assert len(context.text(60)) <= 4 * 60 + 1
     lines = context.text().splitlines()
     assert f"Country: traffic keeps {side}; emergency call {', '.join(law.emergency)}" in lines
     unit = "mph" if code in MILES.split() else "km/h"
