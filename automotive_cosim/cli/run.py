@@ -200,7 +200,6 @@ def _recorded(
     wall_s: float,
     as_json: bool,
 ) -> TrialRow:
-    """Runs an episode and records it."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
     from automotive_cosim.report.film import Film

@@ -151,7 +151,6 @@ def _lamps(brush: ImageDraw.ImageDraw, place: Callable[[Outline], Outline], lamp
 
 
 def _oval(x: float, y: float, across: float, down: float, power: float) -> Outline:
-    """A superellipse."""
     turn = np.linspace(0, 2 * np.pi, 96, endpoint=False)
     cos, sin = np.cos(turn), np.sin(turn)
     xs = x + across * np.sign(cos) * np.abs(cos) ** (2 / power)

@@ -168,7 +168,6 @@ class Cockpit:
             self.inject(path, value)
 
     def copy(self) -> Cockpit:
-        """An independent copy."""
         twin = Cockpit.__new__(Cockpit)
         twin._state = self._state.copy()
         twin._tree = self._tree
@@ -380,7 +379,6 @@ class Cockpit:
         return self._perform(Back())
 
     def open_app(self, name: str) -> Feedback:
-        """Opens an app by its name."""
         wanted = " ".join(name.casefold().split())
         if wanted not in by_any_name():
             page_of = docked().get(wanted)
@@ -415,7 +413,6 @@ class Cockpit:
     # --- safety calls, the same as the safety centre's buttons ----------------------------------------------
 
     def alert(self, alert: Alert) -> Feedback:
-        """Alerts the driver."""
         return self._perform(WarnDriver(alert))
 
     def hazards(self, on: bool) -> Feedback:
@@ -423,7 +420,6 @@ class Cockpit:
         return self.command(LIGHTS.HAZARD, on)
 
     def emergency_call(self) -> Feedback:
-        """Calls the emergency services."""
         return self._perform(CALL_EMERGENCY)
 
     def ask_driver(self, text: str) -> Feedback:
@@ -478,7 +474,6 @@ class Cockpit:
 
     @property
     def size(self) -> ScreenSize:
-        """Size of its display."""
         return self._state.size
 
     @property

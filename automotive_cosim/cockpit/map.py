@@ -90,7 +90,6 @@ class RoadMap:
         return tuple(sorted({road.name for road in self.roads if road.name}))
 
     def find(self, edge_id: str) -> Road | None:
-        """The road of that edge."""
         at = self._index.get(edge_id)
         return None if at is None else self.roads[at]
 

@@ -156,7 +156,6 @@ class _Pen:
     """Fine pixels per logical pixel."""
 
     def width(self, stroke: Stroke) -> float:
-        """Width of a road."""
         return max(LEAST_WIDTH[stroke.rank] * _FINE, stroke.road.lane_count * LANE_M * self.per_metre)
 
     def way(self, strokes: list[Stroke], colour: Colour) -> None:

@@ -85,7 +85,6 @@ class Family:
     """Who is in the car besides the driver; None draws them."""
 
     def draw(self, seed: int) -> DriveScript:
-        """The drive of a seed."""
         rng = Draws(self.id, seed).rng(Purpose.DRIVE)
         kinds = [kind for kind in self.cast if kind in STAGINGS and kind not in ONCE]
         drawn = rng.permutation(len(kinds))[: int(rng.integers(FEWEST, MOST))]

@@ -39,7 +39,6 @@ class Fault:
 
     @property
     def line(self) -> str:
-        """All in a line."""
         return f"{clock(self.time_s)} {self.what}: {self.about}" + (f" ({self.why})" if self.why else "")
 
 

@@ -48,7 +48,6 @@ class GeoContext:
 
     @property
     def speed_kmh(self) -> float:
-        """Speed of the car."""
         return self.driving.speed_mps * KMH_PER_MPS
 
     @property

@@ -458,7 +458,6 @@ class _DrivenPath:
         return self.times_s[-1] + (way_m - self.ways_m[-1]) / max(CREEPING_MPS, self.vehicle.speed_mps)
 
     def speed_mps(self, way_m: float) -> float:
-        """Its speed there."""
         ahead = self.passes_s(way_m + 1.0) - self.passes_s(way_m)
         return 1.0 / ahead if ahead > 0 else max(CREEPING_MPS, self.vehicle.speed_mps)
 

@@ -61,7 +61,6 @@ class DrawnRoute:
 
     @property
     def length_m(self) -> float:
-        """Its length."""
         return sum(edge.length_m for edge in self.way)
 
 

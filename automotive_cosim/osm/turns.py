@@ -91,7 +91,6 @@ class _RoadGraph:
                 self._at.setdefault(ref, []).append(index)
 
     def pieces_of(self, way: int) -> Sequence[int]:
-        """The pieces of a way."""
         return self._of_way.get(way, ())
 
     def at(self, way: int, node: int) -> list[int]:
@@ -99,7 +98,6 @@ class _RoadGraph:
         return [index for index in self.pieces_of(way) if node in self._pieces[index].nodes]
 
     def nodes(self, way: int) -> set[int]:
-        """The nodes of a way."""
         return {ref for index in self.pieces_of(way) for ref in self._pieces[index].nodes}
 
     def arriving(self, node: int) -> Iterator[int]:

@@ -49,7 +49,6 @@ class FailureClass(StrEnum):
 
     @property
     def words(self) -> str:
-        """Its name in words."""
         return self.replace("_", " ").capitalize()
 
     @property

@@ -278,7 +278,6 @@ class _Pen:
         self.brush.line((x, y - 0.4 * size, x, y + 0.2 * size), NIGHT.background, max(1, round(2.5 * self.unit)))
 
     def dot(self, vehicle: SeenVehicle) -> None:
-        """A vehicle as a dot."""
         is_ego = vehicle.vehicle_id == EGO
         x, y = self.view.pixel(vehicle.x_m, vehicle.y_m)
         r = (4.0 if is_ego else 2.4) * self.unit

@@ -72,7 +72,6 @@ class PairSide:
 
     @property
     def row(self) -> EpisodeRow:
-        """What came of it."""
         return self._came[0]
 
     @property

@@ -29,11 +29,9 @@ class Plot:
         self.speeds = SpeedAxis.of(self._path)
 
     def x(self, at_s: float) -> float:
-        """x of a time."""
         return round(self.left + (at_s - self._begin) / (self._end - self._begin) * (self.right - self.left), 1)
 
     def y(self, speed_kmh: float) -> float:
-        """y of a speed."""
         return round(self.bottom - speed_kmh / self.speeds.top_kmh * (self.bottom - self.top), 1)
 
     @property

@@ -125,7 +125,6 @@ class ActEffect:
 
     @property
     def effect(self) -> str:
-        """In words."""
         told = [self.verdict] if self.verdict else []
         if self.points:
             told.append(f"{self.points:+.0f} points".replace("-", "−"))
@@ -237,7 +236,6 @@ class _Act:
 
     @property
     def words(self) -> str:
-        """In words, for reports."""
         return "; ".join(map(_words, self.acts))
 
 
@@ -272,7 +270,6 @@ class Forks(TrialObserver):
     # --- while it runs ------------------------------------------------------------------------------------
 
     def begun(self, session: Any, shot: Shot) -> None:
-        """Forks at the beginning."""
         self._session = session
         self.moments = [session.moments[0]]
         self._given = len(session.world.cockpit.given)
@@ -311,7 +308,6 @@ class Forks(TrialObserver):
             self._untouched = self._session.baseline_moments
 
     def close(self) -> None:
-        """Ends all forks."""
         self._ends.close()
 
     def _fork(self) -> None:

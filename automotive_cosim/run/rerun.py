@@ -133,7 +133,6 @@ def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
 
 
 def _single(folder: Path, trial: str) -> Recorded:
-    """The same for the folder of a trial."""
     if trial:
         raise UserError(f"{folder} holds a single trial; omit {trial!r}")
     told, stored = read_trial(folder), read_steps(folder)
@@ -143,7 +142,6 @@ def _single(folder: Path, trial: str) -> Recorded:
 
 
 def _job(folder: Path, told: Json) -> TrialSetup:
-    """What was run, by the folder of a trial."""
     values = (told.get("manifest") or {}).get("setup")
     if values is None:
         raise UserError(f"{folder} does not say what was run; record the trial again")

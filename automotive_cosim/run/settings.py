@@ -103,7 +103,6 @@ class Budget:
 
     @property
     def is_limited(self) -> bool:
-        """Whether there is a limit."""
         return self.tokens is not None or self.usd is not None
 
 

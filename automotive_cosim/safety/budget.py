@@ -53,7 +53,6 @@ class SearchBudget:
 
     @property
     def most_points(self) -> int:
-        """The points, or as many as any search would have."""
         return MOST_POINTS if self.points is None else self.points
 
 

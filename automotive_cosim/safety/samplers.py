@@ -50,7 +50,6 @@ class RandomSampler:
         self._space, self._rng = space, rng
 
     def ask(self) -> tuple[SearchPoint, bool]:
-        """A random point."""
         return self._space.at(self._rng.random(self._space.dimensions).tolist()), True
 
     def tell(self, point: SearchPoint, margin: float) -> None:
@@ -149,7 +148,6 @@ class ClimbSampler:
         return self._space.at(self._rng.random(self._space.dimensions).tolist()), False
 
     def tell(self, point: SearchPoint, margin: float) -> None:
-        """Notes the margin."""
         self._known[key_of(point)] = margin, point
 
     def _step(self, point: SearchPoint) -> SearchPoint:

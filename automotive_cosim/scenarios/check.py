@@ -57,7 +57,6 @@ class ScenarioProof:
 
     @property
     def ok(self) -> bool:
-        """Whether all checks pass."""
         return all(item.ok for item in self.items)
 
     def as_json(self) -> Json:

@@ -266,7 +266,6 @@ class Site:
 
     @property
     def _own_game(self) -> Game:
-        """The owner's game."""
         if self._game is None:
             raise NotHereError("playing is off here; start `automotive-cosim serve --play`")
         return self._game

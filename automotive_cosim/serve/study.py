@@ -197,7 +197,6 @@ class PeopleStudy:
             return [self._line(job, place) for order in self._orders.values() for place, job in enumerate(order, 1)]
 
     def as_csv(self) -> str:
-        """The same as CSV."""
         lines = self.export()
         return csv_text(lines[0], (line.values() for line in lines))
 

@@ -306,7 +306,6 @@ class NotAsked:
 
     @property
     def writes(self) -> frozenset[str]:
-        """Nothing."""
         return frozenset()
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -337,7 +336,6 @@ class AllOf:
         return frozenset().union(*(check.writes for check in self.checks))
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether all hold."""
         return all(check.holds(start, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
@@ -396,7 +394,6 @@ class AnyOf:
         return frozenset().union(*(check.writes for check in self.checks))
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether any holds."""
         return any(check.holds(start, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
@@ -409,7 +406,6 @@ class NothingDone:
 
     @property
     def writes(self) -> frozenset[str]:
-        """Nothing."""
         return frozenset()
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:

@@ -98,11 +98,9 @@ class Watched:
 
     @property
     def writes(self) -> frozenset[str]:
-        """Nothing."""
         return frozenset()
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether it has passed."""
         return now.time_s - start.time_s >= self.seconds - 1e-9
 
     def __str__(self) -> str:

@@ -227,7 +227,6 @@ class _Reader:
         """What leads on from there, once something has been refused."""
 
     def task(self, entry: Any, default: Mapping[str, Any]) -> Task:
-        """The task of an entry."""
         if not isinstance(entry, Mapping):
             raise UserError("is no table of a task")
         given = self.table(entry, default)
@@ -428,7 +427,6 @@ class _Reader:
         return Param("occupants", {people: company(people) for people in OCCUPANTS})
 
     def topic(self, name: str) -> Any:
-        """The topic of that name."""
         known = {topic.name: topic for topic in self._topics}
         if name not in known:
             raise UnknownNameError("topic", name, known)

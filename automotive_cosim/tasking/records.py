@@ -51,7 +51,6 @@ class AppDataIncludes:
         return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether each of them is there."""
         return all(entry in now.commands[self.key] for entry in self.entries)
 
     def __str__(self) -> str:

@@ -206,7 +206,6 @@ class RemoteTraffic(_Remote):
 
     @property
     def state(self) -> DrivingState:
-        """The newest state."""
         return self._state
 
     def start(self, duration_s: float) -> None:
@@ -293,7 +292,6 @@ class _Source:
         return RemoteTraffic(self, process, state)
 
     def without_ego(self) -> RemoteCopy:
-        """A copy without an ego."""
         with self._lock:
             process = self._copied()
             return RemoteCopy(process, self._outputs_of(self._drives))

@@ -97,7 +97,6 @@ class Sensor:
         self._steps = 0
 
     def read(self, *, hazard_lights: bool, vehicle_count: int) -> Seen:
-        """Reads the instant."""
         sumo, ego = self._sumo, self._ego
         x_m, y_m = sumo.position(ego)
         heading_deg, speed_mps = sumo.angle(ego), sumo.speed(ego)

@@ -295,7 +295,6 @@ class _Watchdog:
             raise TrafficError(f"SUMO was killed by {name} while running {config}; is there enough memory?")
 
     def stop(self) -> None:
-        """Stops watching."""
         self._is_over.set()
         self._thread.join()
 

@@ -125,9 +125,7 @@ class Scene:
 class Signed(Protocol):
     """Says what signs show."""
 
-    def shown(self, limit: Limit) -> Limit:
-        """The limit on the sign."""
-        ...
+    def shown(self, limit: Limit) -> Limit: ...
 
 
 class Sights:

@@ -85,7 +85,6 @@ class DriveAct:
 
     @property
     def words(self) -> str:
-        """In words, for reports."""
         if self.alert is not None:
             speed = "" if self.speed_kmh is None else f", {self.speed_kmh:.0f} km/h"
             severity = "" if self.severity is Severity.WARNING else f", {self.severity}"

@@ -58,7 +58,6 @@ class Tracker:
     """Finds the events of one drive as it goes."""
 
     def __init__(self, kinds: Mapping[str, EventKind]) -> None:
-        """Tracks events of these kinds."""
         self._kinds = kinds
         self._latest: dict[tuple[str, str, bool], DriveEvent] = {}
         self.events: list[DriveEvent] = []

@@ -118,7 +118,6 @@ class Subject:
 
     @property
     def failed(self) -> list[TrialRow]:
-        """Those that failed."""
         return [row for row in self.judged if self.has_failed(row)]
 
     @property
@@ -141,7 +140,6 @@ class Subject:
 
     @property
     def drives(self) -> list[DriveTrialRow]:
-        """The judged drives."""
         return [row for row in self.judged if isinstance(row, DriveTrialRow)]
 
     @property
@@ -151,7 +149,6 @@ class Subject:
 
     @property
     def hours(self) -> float:
-        """Driven."""
         return hours_of(self.judged)
 
     @property

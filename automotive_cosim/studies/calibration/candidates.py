@@ -119,7 +119,6 @@ class _Places:
 
     @classmethod
     def of(cls, routes: Sequence[Candidate]) -> _Places:
-        """The places of some routes."""
         index: dict[str, int] = {}
         edges = np.array([index.setdefault(edge, len(index)) for route in routes for edge in route.edges])
         lengths = np.array([len(route.edges) for route in routes])

@@ -92,7 +92,6 @@ class Counts:
 
     @property
     def sites(self) -> tuple[str, ...]:
-        """All sites, by name."""
         return tuple(sorted({site for site, _ in self.flows_per_h}))
 
     @property
@@ -193,7 +192,6 @@ def _need(path: Path, sheet: Sheet, wanted: Sequence[str]) -> None:
 
 
 def _by_site(path: Path, sheet: Sheet, column: str) -> Iterator[tuple[SheetRow, str]]:
-    """Every row with its site."""
     site = ""
     for row in sheet.rows:
         site = row.cells[column] or site

@@ -150,7 +150,6 @@ def _by_edge(flows: Flows, lanes: Mapping[str, str]) -> Flows:
 
 
 def _lanes(path: Path, detectors: Path | None) -> dict[str, str]:
-    """The lane of each detector."""
     if detectors is None:
         raise CountsError(
             f"{path} counts at detectors and does not say where they are; give the file with their lanes:"

@@ -104,7 +104,6 @@ class CongestionPlan(CongestionSettings):
         return self.opened.ego.trips[0]
 
     def jobs(self) -> tuple[CongestionJob, ...]:
-        """One for each seed."""
         return tuple(CongestionJob(self, seed) for seed in self.seeds)
 
 

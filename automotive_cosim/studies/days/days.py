@@ -161,7 +161,6 @@ class DaysRow(JobRow):
 
     @property
     def drivers(self) -> Drivers:
-        """What these are the days of."""
         if self.share is not None:
             return self.share
         return OPTIMUM if self.optimum else EQUILIBRIUM

@@ -50,7 +50,6 @@ class LeaderWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such a leader."""
         leader = moment.driving.around.leader
         return leader is not None and leader.gap_m <= self.distance_m
 
@@ -66,7 +65,6 @@ class SlowLeaderWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such a leader."""
         leader = moment.driving.around.leader
         return (
             leader is not None
@@ -85,7 +83,6 @@ class FollowerWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such a follower."""
         follower = moment.driving.around.follower
         return follower is not None and follower.gap_m <= self.distance_m
 
