@@ -12,7 +12,7 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.measures.thresholds import Thresholds
 
 
-@takes(Thresholds, only=["ttc_s", "range_m"])
+@takes(Thresholds, only=["ttc_s"])
 def measures(
     record: Annotated[
         Path,

@@ -33,7 +33,7 @@ def screens(**settings: Any) -> None:
         )
     with closing(Simulations()) as simulations:
         finder = SituationFinder(
-            EpisodeSpec(scenario=told.scenario, conditions=Conditions.named({"screen": told.screen})), simulations
+            EpisodeSpec(scenario="paris_centre", conditions=Conditions.named({"screen": told.screen})), simulations
         )
         with closing(finder.find(SeedSource(0).next()).world) as world:
             cockpit = world.cockpit

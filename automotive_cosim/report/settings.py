@@ -46,8 +46,6 @@ class ScreensSettings:
 
     out: Path = Path("runs/screens.webp")
     """Picture to write: .webp, .png or .jpg."""
-    scenario: str = "paris_centre"
-    """Scenario in which the car drives."""
     language: str = "en"
     """Language of the screens: en, fr, de or ja."""
     screen: str = "1280x720"

@@ -10,9 +10,8 @@ import tzfpy
 
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.basics import Basics, basics_of, rows
-from automotive_cosim.geo.borders import country_at
 from automotive_cosim.geo.context import GeoContext
-from automotive_cosim.geo.place import LAW_OF, Atlas
+from automotive_cosim.geo.place import LAW_OF, Atlas, country_at
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.osm.country import LEFT_HAND
 from tests.laws import over

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 S = TypeVar("S", bound="StudyContent[Any, Any]")
 
 
-@takes(CongestionSettings)
+@takes(CongestionSettings, but=("redraw", "step_s"))
 @takes(ExecutorSettings)
 def congestion(
     out: StudyFolder = None,

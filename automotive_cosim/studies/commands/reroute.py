@@ -32,7 +32,11 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.reroute.rows import TripRow
 
 
-@takes(RerouteSettings, but=("scenario", "warm_up_s", "limit_s", "agent_steps", "every_s", "placebo_every"))
+IN_PYTHON = ("limit_s", "agent_steps", "every_s", "placebo_every", "arrived", "via", "ego_class")
+"""What only a ``StudyPlan`` of one's own sets."""
+
+
+@takes(RerouteSettings, but=("scenario", "warm_up_s", *IN_PYTHON))
 @takes(ExecutorSettings)
 def reroute(
     scenario: Annotated[

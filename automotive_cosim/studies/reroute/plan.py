@@ -48,7 +48,7 @@ class StudyPlan(RerouteSettings):
                 )
             make_agent(*named(agent))
         if self.ego_class and not re.fullmatch(r"[A-Za-z0-9_.]+(/[A-Za-z0-9_.]+)?", self.ego_class):
-            raise UserError(f"--ego-class is {self.ego_class!r}; give an emission class of SUMO, as Energy/default")
+            raise UserError(f"ego_class is {self.ego_class!r}; give an emission class of SUMO, as Energy/default")
         scenario = self.scene(0.0)
         if self.close not in ("", AHEAD):
             edges = network_of(scenario).edges
