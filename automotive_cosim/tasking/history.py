@@ -18,7 +18,6 @@ class After:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of both."""
         return self.first.writes | self.then.writes
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -47,7 +46,6 @@ class Lasted:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of the check."""
         return self.check.writes
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -75,7 +73,6 @@ class NotBefore:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of the check."""
         return self.check.writes
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -118,7 +115,6 @@ class While:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of both."""
         return self.condition.writes | self.check.writes
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:

@@ -505,7 +505,7 @@ def ends(made: Future, at_s: float) -> Future:
         ({"replicates": "many"}, "'auto'"),
         ({"together": (1.5,)}, "--together"),
         ({"together": (0.5, 0.5)}, "twice"),
-        ({"arrived": 0.1}, "--arrived"),
+        ({"arrived": 0.1}, "arrived"),
         ({"ego_class": "Energy default"}, "emission class"),
     ],
 )

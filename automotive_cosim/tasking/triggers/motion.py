@@ -20,7 +20,6 @@ class SignalAbove:
     value: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the signal's value qualifies."""
         return float(moment.signals[self.signal.path]) > self.value
 
     def __str__(self) -> str:
@@ -35,7 +34,6 @@ class SignalBelow:
     value: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the signal's value qualifies."""
         return float(moment.signals[self.signal.path]) < self.value
 
     def __str__(self) -> str:
@@ -50,7 +48,6 @@ class SignalHas:
     value: Any
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the signal's value qualifies."""
         return bool(moment.signals[self.signal.path] == self.value)
 
     def __str__(self) -> str:
@@ -73,7 +70,6 @@ class Parked:
     """The ego is in park."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the gear is park."""
         return (
             motion(moment.signals[MOTION.GEAR.path], moment.signals[MOTION.SPEED.path]) is Motion.PARKED
             and moment.driving.speed_mps < STANDING_MPS
@@ -103,7 +99,6 @@ class SpeedAbove:
     limit_to_kmh: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether speed and limit qualify."""
         limit_mps = moment.driving.road.limit.posted_mps
         return (
             moment.driving.speed_mps * KMH_PER_MPS > self.speed_kmh
@@ -126,7 +121,6 @@ class SpeedBetween:
     to_kmh: float = ANY
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the speed is in the range."""
         return self.from_kmh < moment.driving.speed_mps * KMH_PER_MPS <= self.to_kmh
 
     def __str__(self) -> str:
@@ -142,7 +136,6 @@ class OverPosted:
     share: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether speed and limit qualify."""
         limit_mps = moment.driving.road.limit.posted_mps
         return limit_mps is not None and moment.driving.speed_mps > (1 + self.share) * limit_mps
 
