@@ -31,7 +31,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError, UserError, install_hint
-from automotive_cosim.run.settings import Budget, EvaluationSettings, PlanSettings, RunSettings
+from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
 
 @takes_conditions(lists=True)
-@takes(PlanSettings)
 @takes(EvaluationSettings, but=[each.name for each in TABLE])
 @takes(ExecutorSettings)
 @takes(RunSettings)
@@ -72,8 +71,8 @@ def evaluate(
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenarios import open_scenario
 
-    chosen, running = filled(PlanSettings, settings), filled(RunSettings, settings)
-    values: dict[str, Any] = read_plan(chosen.plan) if chosen.plan else {}
+    running = filled(RunSettings, settings)
+    values: dict[str, Any] = read_plan(running.plan) if running.plan else {}
     values |= settings_in(EvaluationSettings, settings) | values_of(settings)
     told = settings_in(DriveChanges, settings)
     values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
@@ -81,17 +80,17 @@ def evaluate(
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = filled(Budget, settings)
     plan = make_plan(values)
-    folder = chosen.out or _folder(plan)
+    folder = running.out or _folder(plan)
     choice = filled(ExecutorSettings, settings)
     where = choice.opened()
     console = Console(highlight=False)
-    lacks, unit = plan.check(dry=chosen.dry_run), unit_of(plan.as_json())
+    lacks, unit = plan.check(dry=running.dry_run), unit_of(plan.as_json())
     check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     known = read_trials(folder) if (folder / "manifest.json").is_file() else {}
     needs = forecast(plan.jobs(), choice.processes, known.values())
-    if chosen.dry_run:
+    if running.dry_run:
         lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
         for line in (*forecast_in_words(needs, choice.processes), "nothing was run"):
             console.print(line, soft_wrap=True)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, print_json, reads_results
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UserError, install_hint
-from automotive_cosim.report.settings import PlaybackSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.run.attribution import ActEffect
@@ -101,7 +99,6 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
 
 
 @reads_results
-@takes(PlaybackSettings)
 def replay(
     folder: TrialFolder,
     episode: TrialId = "",
@@ -109,8 +106,15 @@ def replay(
         list[int] | None,
         typer.Option(help="Leave out what this step commanded, and say what that changes; may be repeated."),
     ] = None,
+    play: Annotated[
+        bool,
+        typer.Option("--play", help="Print the recorded steps instead, four times as fast; of `run` alone."),
+    ] = False,
+    film: Annotated[
+        Path | None,
+        typer.Option(help="Write the recorded screens as an animation instead, .webp or .gif; of `run` alone."),
+    ] = None,
     as_json: AsJson = False,
-    **settings: Any,
 ) -> None:
     """Replay the actions of a stored trial and compare the traces, or play back its record.
 
@@ -118,11 +122,10 @@ def replay(
     """
     from automotive_cosim.run.rerun import rerun
 
-    shown = filled(PlaybackSettings, settings)
-    if shown.play or shown.film is not None:
+    if play or film is not None:
         if episode or as_json:
             raise UserError("--play and --film show the record of one `run`; omit the episode and --json")
-        _show_record(folder, shown.film)
+        _show_record(folder, film)
         return
     if without:
         from automotive_cosim.run.attribution import attribute as measured

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from contextlib import closing
-from typing import Any
+from pathlib import Path
+from typing import Annotated
 
 import typer
-
-from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.report.settings import ScreensSettings
 
 FORMATS = {".webp": "WEBP", ".png": "PNG", ".jpg": "JPEG"}
 
 
-@takes(ScreensSettings)
-def screens(**settings: Any) -> None:
+def screens(
+    out: Annotated[Path, typer.Option(help="Picture to write: .webp, .png or .jpg.")] = Path("runs/screens.webp"),
+    language: Annotated[str, typer.Option(help="Language of the screens: en, fr, de or ja.")] = "en",
+    screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
+) -> None:
     """Draw every screen by day and by night, as it is at the start of a drive."""
     from automotive_cosim.cockpit.signals import HMI
     from automotive_cosim.episode.conditions import Conditions
@@ -25,20 +26,18 @@ def screens(**settings: Any) -> None:
     from automotive_cosim.report.contactsheet import contact_sheet
     from automotive_cosim.traffic.fork import Simulations
 
-    told = filled(ScreensSettings, settings)
-    if told.out.suffix not in FORMATS:
+    if out.suffix not in FORMATS:
         raise UserError(
-            f"{told.out} is not a picture format that can be written; give --out a name ending in .webp, .png or "
-            ".jpg"
+            f"{out} is not a picture format that can be written; give --out a name ending in .webp, .png or .jpg"
         )
     with closing(Simulations()) as simulations:
         finder = SituationFinder(
-            EpisodeSpec(scenario="paris_centre", conditions=Conditions.named({"screen": told.screen})), simulations
+            EpisodeSpec(scenario="paris_centre", conditions=Conditions.named({"screen": screen})), simulations
         )
         with closing(finder.find(SeedSource(0).next()).world) as world:
             cockpit = world.cockpit
-    cockpit.inject(HMI.LANGUAGE.path, told.language)
-    make_folder(told.out.parent)
-    with drafted(told.out) as file:
-        contact_sheet(cockpit).save(file, FORMATS[told.out.suffix], quality=80)
-    typer.echo(f"{told.out} written")
+    cockpit.inject(HMI.LANGUAGE.path, language)
+    make_folder(out.parent)
+    with drafted(out) as file:
+        contact_sheet(cockpit).save(file, FORMATS[out.suffix], quality=80)
+    typer.echo(f"{out} written")

@@ -1,4 +1,4 @@
-"""What the commands on results and screens can be told. Each field is an option of its command."""
+"""What ``compare`` can be told. Each field is an option."""
 
 from __future__ import annotations
 
@@ -28,25 +28,3 @@ class CompareSettings:
     def allowed(self) -> float:
         """The threshold as a share."""
         return self.threshold / 100
-
-
-@dataclass(frozen=True, slots=True)
-class PlaybackSettings:
-    """How a record is shown again, instead of being run again."""
-
-    play: bool = False
-    """Print the recorded steps instead, four times as fast; of `run` alone."""
-    film: Path | None = None
-    """Write the recorded screens as an animation instead, .webp or .gif; of `run` alone."""
-
-
-@dataclass(frozen=True, slots=True)
-class ScreensSettings:
-    """Which screens are drawn, and where to."""
-
-    out: Path = Path("runs/screens.webp")
-    """Picture to write: .webp, .png or .jpg."""
-    language: str = "en"
-    """Language of the screens: en, fr, de or ja."""
-    screen: str = "1280x720"
-    """Size of the screen: 1280x720, 1920x720 or 1080x1920."""

@@ -1,5 +1,5 @@
 """What can be set about an evaluation. Each field is a value of ``plan.toml`` and an option of ``eval``. And about
-``run`` and ``bench``."""
+``run``."""
 
 from __future__ import annotations
 
@@ -69,8 +69,14 @@ PICTURED = 50
 
 @dataclass(frozen=True, slots=True)
 class RunSettings:
-    """How a plan is run; whatever it is, the same rows come out."""
+    """Which plan is evaluated, how and where to; however it is run, the same rows come out."""
 
+    plan: Path | None = None
+    """TOML file with the plan; options override it."""
+    out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
+    """Results folder; an existing one is resumed."""
+    dry_run: bool = False
+    """Show the plan and exit."""
     retries: Annotated[int, Ge(0), Le(100)] = 2
     """Further attempts after an infrastructure error."""
     pictures: Annotated[
@@ -107,18 +113,6 @@ class Budget:
 
 
 @dataclass(frozen=True, slots=True)
-class PlanSettings:
-    """Which plan is evaluated, and where to."""
-
-    plan: Path | None = None
-    """TOML file with the plan; options override it."""
-    out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
-    """Results folder; an existing one is resumed."""
-    dry_run: bool = False
-    """Show the plan and exit."""
-
-
-@dataclass(frozen=True, slots=True)
 class SingleSettings:
     """How one trial is run, and where to."""
 
@@ -134,13 +128,3 @@ class SingleSettings:
     """Run the agent twice from the same instant, with its place and without, side by side."""
     actions: Path | None = None
     """Play a file of actions, one JSON object per line, instead of an agent."""
-
-
-@dataclass(frozen=True, slots=True)
-class BenchSettings:
-    """What ``bench`` measures."""
-
-    scenario: str = "paris_centre"
-    """A scenario's name or folder, any .sumocfg or .net.xml(.gz)."""
-    steps: Annotated[int, Ge(100), Le(10**6)] = 2000
-    """SUMO steps to measure after the warm-up."""

@@ -26,13 +26,10 @@ from automotive_cosim.formats.docs import inherited_field_docs
 from automotive_cosim.formats.options import option
 from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.proof.settings import ProofSettings
-from automotive_cosim.publish.settings import VerifySettings
-from automotive_cosim.report.settings import CompareSettings, PlaybackSettings, ScreensSettings
+from automotive_cosim.report.settings import CompareSettings
 from automotive_cosim.run.settings import (
-    BenchSettings,
     Budget,
     EvaluationSettings,
-    PlanSettings,
     RunSettings,
     SingleSettings,
 )
@@ -46,7 +43,6 @@ COMMANDS = (
     ("run", DriveChanges, set()),
     ("eval", EvaluationSettings, {each.name for each in TABLE}),
     ("eval", RunSettings, set()),
-    ("eval", PlanSettings, set()),
     ("eval", Budget, set()),
     ("eval", ExecutorSettings, set()),
     ("search", SearchOrder, set()),
@@ -57,11 +53,7 @@ COMMANDS = (
     ("mcp", McpSettings, set()),
     ("a2a", A2aSettings, set()),
     ("serve", ServeSettings, set()),
-    ("bench", BenchSettings, set()),
     ("compare", CompareSettings, set()),
-    ("replay", PlaybackSettings, set()),
-    ("show screens", ScreensSettings, set()),
-    ("publish verify", VerifySettings, set()),
 )
 """Commands, what they can be told, and the fields of it that are no options."""
 
