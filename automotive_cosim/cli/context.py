@@ -33,7 +33,7 @@ COMMAND_SETTINGS = {"ignore_unknown_options": True}
 
 
 @dataclass(frozen=True, slots=True)
-class ContextSettings:
+class _ContextSettings:
     """What can be told about a car that is somewhere."""
 
     time: str = ""
@@ -52,7 +52,7 @@ class ContextSettings:
     """OSM highway value, e.g. motorway, primary, residential."""
 
 
-@takes(ContextSettings)
+@takes(_ContextSettings)
 def context(
     lat: Annotated[float, typer.Argument(help="Degrees north; negative is south.")],
     lon: Annotated[float, typer.Argument(help="Degrees east; negative is west.")],
@@ -66,7 +66,7 @@ def context(
     from automotive_cosim.contracts import GpsFix
     from automotive_cosim.geo.locate import Geo
 
-    told = filled(ContextSettings, settings)
+    told = filled(_ContextSettings, settings)
     _check(told.road, rules or ())
     geo = Geo(rules or ())
     place = geo.atlas.place(lon, lat)
@@ -105,7 +105,7 @@ def _time(text: str, zone_name: str) -> datetime:
         raise UserError(f"{text!r} is not a date and time; give one such as 2026-03-20T18:30") from error
 
 
-def _weather(told: ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather | None:
+def _weather(told: _ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather | None:
     from automotive_cosim.geo.climate import climate_norm
     from automotive_cosim.geo.weather import typical_weather
 
@@ -121,7 +121,7 @@ def _weather(told: ContextSettings, lat: float, lon: float, local_time: datetime
     return found if told.visibility_m is None else replace(found, visibility=told.visibility_m)
 
 
-def _report(told: ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather:
+def _report(told: _ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather:
     from automotive_cosim.geo.forecast import Climate, OpenMeteo
 
     if told.weather is not None:
@@ -136,7 +136,7 @@ def _report(told: ContextSettings, lat: float, lon: float, local_time: datetime)
     return report.weather
 
 
-def _driving(told: ContextSettings) -> DrivingState:
+def _driving(told: _ContextSettings) -> DrivingState:
     """A car alone on a road with one lane and no sign."""
     from automotive_cosim import contracts
 

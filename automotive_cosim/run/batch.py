@@ -73,7 +73,7 @@ class Progress(Generic[R]):
     """Why the rest is not run; empty if it is run or nothing is left."""
 
 
-class BatchPlan(Protocol):
+class _BatchPlan(Protocol):
     """What a batch runs; ``check`` raises a UserError for what does not exist or is out of range."""
 
     def check(self) -> object: ...
@@ -83,7 +83,7 @@ class BatchPlan(Protocol):
     def jobs(self) -> Sequence[Any]: ...
 
 
-P = TypeVar("P", bound=BatchPlan)
+P = TypeVar("P", bound=_BatchPlan)
 
 
 @dataclass(frozen=True, slots=True)

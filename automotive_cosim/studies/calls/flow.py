@@ -89,7 +89,7 @@ class FlowSummary:
     (``detours``)."""
 
 
-class Advisor:
+class _Advisor:
     """Gives the advice, step by step. Who is asked, and who follows, depends on the seed and the vehicle's name."""
 
     def __init__(self, sumo: LibSumo, router: Router, advice: Advice, seed: int) -> None:
@@ -162,7 +162,7 @@ def take(running: Running, measure: AnyIncident | Advice | SignalControl, seed: 
     match measure:
         case Advice():  # with a search of its own
             router = Router(running.sumo, world.network, world.congestion, SEARCHING_TYPE)
-            running.watchers.append(Advisor(running.sumo, router, measure, seed))
+            running.watchers.append(_Advisor(running.sumo, router, measure, seed))
         case SignalControl():
             if not control(running.sumo, measure):
                 raise ScenarioError("the network has no signals to control in another way")

@@ -90,8 +90,8 @@ def search_places(
         [
             {
                 "name": str(name),
-                "street": str(place.street if (place := atlas.find(name)) else name),
-                "detail": str(place.detail if place else ""),
+                "street": str(there.street if (there := atlas.find(name)) else name),
+                "detail": str(there.detail if there else ""),
                 "distance": away(state, name),
             }
             for name in matches(twin)
