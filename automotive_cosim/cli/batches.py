@@ -79,7 +79,6 @@ class ProgressView(Generic[R]):
         """Nothing has been told yet.
 
         Args:
-            console: where to show it.
             what: is being run, in the plural.
             said: gives the text next to its count.
             expected: seconds that it was said to take before it started; None if it was not.

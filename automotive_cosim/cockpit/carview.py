@@ -34,7 +34,6 @@ def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int
     Args:
         width: pixels.
         height: pixels.
-        lamps: the lamps that are lit.
         windshield: its opacity in tenths.
         rear_window: its opacity in tenths.
         night: whether to use the night palette.

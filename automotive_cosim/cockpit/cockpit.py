@@ -155,7 +155,6 @@ def put_back(state: State, departed: State, surroundings: Surroundings, way: tim
         state: changed in place.
         departed: the same cockpit's at departure.
         surroundings: the present ones, at the departure's time of day.
-        way: how much earlier that is.
         with_air: whether air, glass, seats and tyres are put back too.
     """
     for signal in (*USED, *(BODIES if with_air else ())):
@@ -257,7 +256,6 @@ class Cockpit:
         """A cockpit before its first ``sense``.
 
         Args:
-            network: the network for the map.
             rng: draws media, places, people and the driver's stored data.
             aboard: who is in the car besides the driver.
             cabin: fields of ``CabinStart``.
@@ -272,7 +270,6 @@ class Cockpit:
             lookout: whether home and map show what the car notices around, ahead and aboard.
             driven_s: how long the driver had been driving without a break before departure.
             places_on: edges on which places may lie; None means any.
-            size: size of the display.
             width: width of the screenshot in pixels, by default that of the size; the height follows.
 
         Raises:
@@ -430,7 +427,6 @@ class Cockpit:
         Args:
             x: where the finger touches, in pixels of the screenshot.
             y: where the finger touches, in pixels of the screenshot.
-            direction: direction of the movement.
             distance_px: its length. A slider takes the value where the finger lifts, a list moves by the rows
                 passed, the map moves along. Without it: a tenth of the range, a page, over a third of the map.
         """
@@ -460,7 +456,6 @@ class Cockpit:
 
         Args:
             key: of the list or of something in it; empty for the first list on the screen.
-            direction: the direction to scroll.
         """
         lists = [widget for widget in self._screen.walk() if isinstance(widget, Rows)]
         if key:

@@ -120,7 +120,6 @@ class RoadMap:
 
         Args:
             area: the map's area on the screen.
-            camera: the map's camera.
             avoid: boxes that must stay free.
         """
         view = View(camera, 1 / camera.metres_per_pixel, area.width / 2, area.height * camera.down)

@@ -13,7 +13,6 @@ def number_in(value: Any, most: float) -> float | None:
     """A number from an int, a float or its text; None if it is none.
 
     Args:
-        value: what was given.
         most: what is farther from zero becomes this: a float may not hold it.
     """
     if isinstance(value, str):

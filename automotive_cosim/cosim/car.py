@@ -31,7 +31,6 @@ def handled(reaction: str, signals: Signals) -> Iterator[CarChange]:
 
     Args:
         reaction: kind of the driver's reaction on the road (``traffic.base.Event``).
-        signals: the car as it is.
     """
     if reaction == WAKES_UP and signals[CALL.PHONE] == "HAND":
         yield CarChange(0.0, CALL.PHONE.path, "AWAY")
@@ -89,8 +88,6 @@ class Car:
         keeps its own: what is posted for certain hours goes by that.
 
         Args:
-            departed: its cockpit at its departure.
-            now: its present moment.
             with_air: whether air, glass, seats and tyres are put back too.
 
         Returns:
@@ -195,7 +192,6 @@ def with_cause(errands: Iterable[Errand], since_s: float, now_s: float, ringing:
     Args:
         errands: all of them, by simulation time.
         since_s: the previous instant.
-        now_s: the present one.
         ringing: who calls now; empty if nobody does.
     """
 

@@ -153,7 +153,6 @@ def _times_s(
     Args:
         takes_s: by how much longer than others each staging takes before the next one.
         comes_s: how long each takes until it obliges.
-        rng: draws them.
     """
     quiet_before = int(rng.integers(1, len(takes_s)))
     length_s = QUIET_S + float(round(rng.uniform(0, 60)))

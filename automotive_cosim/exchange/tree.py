@@ -34,7 +34,6 @@ def evaluated(text: str, scope: Mapping[str, str]) -> str:
 
     Args:
         text: a value, ``$parameter`` or ``${expression}``.
-        scope: the values of the parameters.
 
     Raises:
         ValueError: it is no expression that can be evaluated, or names an unknown parameter.
@@ -217,7 +216,6 @@ def read_tree(path: Path, kept: frozenset[str] | None = None) -> XmlElement:
     """The root of an XML file.
 
     Args:
-        path: the file.
         kept: of which elements there is a node, in that of the nearest kept one around it; None keeps all.
 
     Raises:

@@ -106,7 +106,6 @@ def drawn_weather(driving: DrivingState, departure: datetime, seed: int) -> tupl
     Every place on earth has one: the nearest station, however far, is used for an unlisted climate.
 
     Args:
-        driving: where the drive begins.
         departure: when it begins, zone-aware.
         seed: seed of the draw.
 

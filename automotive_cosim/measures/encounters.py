@@ -180,7 +180,6 @@ def as_csv(
 
     Args:
         rows: encounters or readings.
-        kind: of what they are.
         trials: the trial of each row, for a first column; None if they are all of one.
     """
     names = _names(kind)

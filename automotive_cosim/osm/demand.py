@@ -87,7 +87,6 @@ def draw(
 
     Args:
         built: the imported network.
-        net_file: its file.
         scratch: a folder for intermediate files.
         density_per_km: vehicles per kilometre of lane at a time if all drove freely. Unlike the number of
             departures, this measures how full a network is, whatever its size.
@@ -219,8 +218,6 @@ def fastest_ways(
 
     Args:
         ends: first and last edge of each route.
-        network: the network.
-        net_file: its file.
         scratch: a folder for intermediate files.
 
     Raises:

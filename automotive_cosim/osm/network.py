@@ -112,7 +112,6 @@ def convert(
     parameters of its road (``MappedRoad.parameters``), and the positions of its speed cameras.
 
     Args:
-        extract: the map.
         roads: its roads, by OSM way.
         target: the file to create.
         country: ISO 3166-1 code, which decides the driving side.

@@ -115,7 +115,6 @@ def download(
 
     Args:
         endpoint: URL of an Overpass API's ``interpreter``.
-        area: the area to fetch.
         target: the file to create; it must not exist.
         limits: limits of time, attempts and size.
         tell: called with the current activity.

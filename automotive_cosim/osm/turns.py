@@ -123,9 +123,7 @@ def read_turns(restrictions: Iterable[Relation], pieces: Sequence[Piece], may: S
     """The bans for cars that the restrictions of a map state.
 
     Args:
-        restrictions: the relations.
         pieces: the roads, cut at barriers.
-        may: the directions open on each.
     """
     network, turns = _RoadGraph(pieces, may), BannedTurns()
     for relation in restrictions:

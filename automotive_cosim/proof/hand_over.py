@@ -122,8 +122,6 @@ class Ground:
         """Drives up to the hand-over, in the task's own scenario or another.
 
         Args:
-            task: the task.
-            half_name: which half.
             seed: determines traffic, drive, phrasing and parameters.
             simulations: warm traffic.
             scenario: used instead of the task's own.

@@ -100,7 +100,6 @@ def charted(
     """The plots that have something to show, by name.
 
     Args:
-        made: title and drawing of each.
         narrow: drawings of those that have another one for a narrow page.
 
     Raises:

@@ -101,8 +101,6 @@ class RoadPainter:
         """Draws the road around the last sample.
 
         Args:
-            canvas: the frame.
-            area: where to draw on it.
             past: the drive so far, oldest first; the trail is red where it was above the limit.
             avoid: boxes without street names.
         """
@@ -127,8 +125,6 @@ class RoadPainter:
         """Draws the road with the drive going to the right, and on it several cars that set out as one.
 
         Args:
-            canvas: the frame.
-            area: where to draw on it.
             cars: where each is, by its colour; the first is the recorded one, among whose traffic all are shown.
         """
         here = next(iter(cars.values()))

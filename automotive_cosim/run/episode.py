@@ -65,7 +65,6 @@ def estimates(steps: Sequence[Step], moments: Sequence[Moment]) -> tuple[Positio
     """The estimates of an episode, in order, except those made while there was a fix.
 
     Args:
-        steps: steps of the episode.
         moments: from departure to its end, in order.
     """
     found = []

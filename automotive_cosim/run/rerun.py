@@ -182,7 +182,6 @@ def played(
     """Plays the actions of a stored trial in the same setup; its row, and what an evaluation would keep of it.
 
     Args:
-        job: the trial.
         stored: the steps of its trace.
         channels: those of its agent, on which the answers to queries depend.
         failure: how the agent's side failed after them, if it did.

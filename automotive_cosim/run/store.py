@@ -130,9 +130,7 @@ def opened(
     """Creates or resumes an evaluation's folder, and locks it until it is closed.
 
     Args:
-        folder: its path.
         plan: the plan; a folder that was started with a different one is refused.
-        kind: kind of its rows.
         parts: folders in it.
         planned: how many jobs the plan has, for the manifest.
         grows: the plan may differ from the earlier one, for runs that are not known in advance; see ``replan``.
@@ -278,7 +276,6 @@ def keep_files(folder: Path, files: Mapping[str, bytes]) -> None:
     """Writes an episode's files from another node, each completely or not at all.
 
     Args:
-        folder: the evaluation's.
         files: contents by path below it, with ``/`` between its parts.
 
     Raises:

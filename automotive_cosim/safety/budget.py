@@ -60,8 +60,6 @@ def progress_in_words(budget: SearchBudget, points: int, used_s: float, each_s: 
     """How far a search is, by each limit of its budget, and the time left by the one that is reached first.
 
     Args:
-        budget: what it may use.
-        points: that were sampled.
         used_s: wall time so far, with earlier starts.
         each_s: wall time of a run; 0 while unknown.
     """

@@ -250,7 +250,6 @@ def moves(text: str, decode: Decode, solution: Sequence[Move] = ()) -> tuple[Mov
     """Moves as they are written.
 
     Args:
-        text: what is written.
         decode: turns a written value into one of a type.
         solution: what ``first`` and ``last`` are of.
 

@@ -110,8 +110,6 @@ def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> It
     """The tasks of a file, in order.
 
     Args:
-        document: the file.
-        shared: what every file may use.
         check: finds in a half what is wrong with it, and in which field.
 
     Raises:

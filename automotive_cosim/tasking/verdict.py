@@ -48,7 +48,6 @@ def only_answered(instance: Instance, said: Sequence[str]) -> bool:
     """Whether nothing had to be done and the driver was told so, and nothing else.
 
     Args:
-        instance: the instance of the task.
         said: every ``answer`` of the agent.
     """
     return (
@@ -197,7 +196,6 @@ def judge(
     """Judges a finished episode from what happened; it has no other input and no effect.
 
     Args:
-        instance: the instance of the task.
         trace: moments from the hand-over (trigger) to the end, one per tick.
         baseline: moments of the baseline run over the same time.
         counterfactual: gives what would be commanded at the end, had the agent given only the commands that the

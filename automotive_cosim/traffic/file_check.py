@@ -62,7 +62,6 @@ def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file
     """Checks a network, a route file or an additional file, also packed, and the files that it names.
 
     Args:
-        path: the file.
         also: reads the file, too.
         what: what the file should be, for errors.
 

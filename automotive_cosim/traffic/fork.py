@@ -61,7 +61,6 @@ class Forked:
         """Loads the scenario and warms up its traffic, or copies that of one that has the same.
 
         Args:
-            scenario: the scenario to run.
             seed: seed of SUMO's random numbers.
             progress: called with the progress of the warm-up.
             allow_unprojected: accept a network without projection, with lon and lat None.
@@ -101,8 +100,6 @@ class Forked:
 
         Args:
             call: a module's function, which is sent by its name, of what runs there and the arguments.
-            arguments: its further arguments.
-            named: the same.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.

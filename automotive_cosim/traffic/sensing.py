@@ -44,11 +44,9 @@ class Sensor:
         Args:
             sumo: the running simulation.
             ego_id: the ego's vehicle.
-            network: the roads.
             congestion: smoothed speeds.
             incidents: gives those that live traffic reports now.
             emergency: vehicles with blue lights, updated by the owner.
-            step_s: step length.
         """
         self._sumo = sumo
         self._ego = ego_id

@@ -135,8 +135,6 @@ class Sights:
         """Indexes it: 20 ms for three thousand lanes.
 
         Args:
-            shapes: its lanes.
-            network: its roads.
             signed: what a sign shows in a network that was moved to another country; None as it is.
         """
         self.of = shapes, network, signed

@@ -77,13 +77,7 @@ class ErrandEvent(EventKind):
 
     @abstractmethod
     def is_done(self, errand: Errand, begun: Moment, now: Moment) -> bool:
-        """Whether it is carried out.
-
-        Args:
-            errand: what was asked for.
-            begun: the moment at which it was said.
-            now: a later one.
-        """
+        """Whether it is carried out."""
 
     def is_possible(self, errand: Errand, now: Moment) -> bool:
         """Whether it can be carried out now."""

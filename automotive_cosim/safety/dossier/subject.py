@@ -166,7 +166,6 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     """The trials of an agent in a folder of ``eval`` or ``search``.
 
     Args:
-        folder: the folder.
         agent: whose; empty if there is only one that is neither a reference nor a control.
 
     Raises:

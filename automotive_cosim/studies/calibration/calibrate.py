@@ -53,7 +53,6 @@ def calibrate(
     """Writes a copy of a scenario whose demand carries the counts. A demand that gridlocks is not written.
 
     Args:
-        scenario: what to calibrate.
         counts_file: hourly counts, see ``counts``.
         target: the copy's, new or empty; it appears once it is complete.
         options: the user's options.

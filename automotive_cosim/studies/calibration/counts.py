@@ -115,7 +115,6 @@ def read_counts(path: Path, zone: tzinfo, sites: Path | None = None) -> Counts:
     """Reads a file of counts.
 
     Args:
-        path: of any kind.
         zone: time zone of the counted roads.
         sites: a file that says where the sites stand; for counts of SUMO's detectors, theirs.
 

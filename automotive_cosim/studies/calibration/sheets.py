@@ -66,9 +66,7 @@ def read_sheet(
 
     Args:
         path: the file, also gzipped.
-        wanted: sets of columns; a line that has all of one names the columns.
         known: columns whose case and spaces do not matter.
-        figures: columns of numbers.
 
     Raises:
         CountsError: it cannot be read.

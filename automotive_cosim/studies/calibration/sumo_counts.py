@@ -97,8 +97,6 @@ def read_dfrouter_counts(path: Path, sheet: Sheet, detectors: Path | None) -> Fl
     """The flows of dfrouter's table. A period lasts until the next one of the file; if there is only one, an hour.
 
     Args:
-        path: the file that the table is of, for errors.
-        sheet: the table.
         detectors: the file that says on which lane each detector lies.
 
     Raises:

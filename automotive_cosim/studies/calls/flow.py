@@ -150,11 +150,6 @@ class _Advisor:
 def take(running: Running, measure: AnyIncident | Advice | SignalControl, seed: int) -> None:
     """Takes a measure now; the times of incidents count from the end of the warm-up.
 
-    Args:
-        running: the traffic.
-        measure: what to do.
-        seed: who is advised.
-
     Raises:
         ScenarioError: it does not fit the network.
     """
@@ -174,7 +169,6 @@ def flow(running: Running, duration_s: float, every_s: float) -> tuple[FlowSumma
     """Lets the traffic run without an ego; returns its state now and at the end of every period.
 
     Args:
-        running: the traffic, with a ledger.
         duration_s: how long, a multiple of the period.
         every_s: the period, a multiple of the step.
     """

@@ -95,7 +95,6 @@ class OwnAdviser:
 
         Args:
             spec: ``package.module:Class``.
-            seed: what it is made with.
             network: on which its routes have to lead from edge to edge.
 
         Raises:

@@ -64,7 +64,6 @@ def run_drive(
     """Runs a drive, branches at every decision point, and compares the futures.
 
     Args:
-        job: the drive to run.
         simulation: its traffic at the ego's departure, watched.
         history: measurements of the traffic so far, ``traffic.MEASURED_EVERY_S`` apart.
         tracks: folder for the ego's tracks in a simulation that keeps them; None leaves them out.
