@@ -108,7 +108,7 @@ class GeoContext:
         """Country, region, city, and whose rules apply.
 
         Raises:
-            GeoDataError: a rule file of the country is invalid.
+            UserError: a rule file of the country is invalid.
         """
         return NOWHERE if self.gps is None else self.atlas.place(self.gps.lon_deg, self.gps.lat_deg)
 

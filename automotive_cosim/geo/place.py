@@ -14,7 +14,7 @@ from typing import Any
 import shapely
 import tzfpy
 
-from automotive_cosim.errors import GeoDataError, UserError
+from automotive_cosim.errors import UserError
 from automotive_cosim.geo.basics import basics_of
 from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
 from automotive_cosim.geo.rulefile import read_jurisdiction
@@ -155,7 +155,7 @@ class Atlas:
         self._files: dict[str, Path] = {}
         for folder in (*folders, Path(str(files("automotive_cosim.geo.data")))):
             if not folder.is_dir():
-                raise GeoDataError(f"{folder} is not a folder; give one with rule files such as FR.toml")
+                raise UserError(f"{folder} is not a folder; give one with rule files such as FR.toml")
             for name in sorted(path.name for path in folder.iterdir() if path.suffix == ".toml"):
                 self._files.setdefault(name.removesuffix(".toml"), folder / name)
         self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
@@ -173,7 +173,7 @@ class Atlas:
 
         Raises:
             UserError: not a position on earth.
-            GeoDataError: a rule file of the country is invalid.
+            UserError: a rule file of the country is invalid.
         """
         check_position(lon_deg, lat_deg)
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
@@ -201,7 +201,7 @@ class Atlas:
         Without a file of its own it has its ``basics``, which also complete a file.
 
         Raises:
-            GeoDataError: one of the files is invalid, or a region's country has none.
+            UserError: one of the files is invalid, or a region's country has none.
         """
         if code not in self._countries:
             codes = [name for name in self._files if name == code or name.startswith(f"{code}-")]
@@ -212,7 +212,7 @@ class Atlas:
             elif row is not None and row.is_whole:
                 found.append(row.country)
             elif found:
-                raise GeoDataError(f"{self._files[codes[0]]}: there is no {code}.toml for its country")
+                raise UserError(f"{self._files[codes[0]]}: there is no {code}.toml for its country")
             order = ("city", "region", "country")
             self._countries[code] = tuple(sorted(found, key=lambda entry: order.index(entry.kind)))
         return self._countries[code]
@@ -221,7 +221,7 @@ class Atlas:
         path = self._files[code]
         entry = read_jurisdiction(path)
         if entry.code != code:
-            raise GeoDataError(f"{path} [jurisdiction]: code {entry.code!r} is not the name of the file")
+            raise UserError(f"{path} [jurisdiction]: code {entry.code!r} is not the name of the file")
         return entry
 
     def _layers(self, country: str, lon_deg: float, lat_deg: float) -> Iterator[Jurisdiction]:

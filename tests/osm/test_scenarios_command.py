@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from automotive_cosim import scenarios
 from automotive_cosim.cli.scenarios import app
-from automotive_cosim.errors import ImportMapError, UnknownNameError
+from automotive_cosim.errors import UnknownNameError, UserError
 
 
 @pytest.mark.sumo
@@ -39,7 +39,7 @@ def test_import_makes_a_folder_and_prints_the_figures(
 
 def test_import_passes_errors_on(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["import", str(tmp_path / "nowhere.osm.pbf"), "--out", str(tmp_path / "out")])
-    assert isinstance(done.exception, ImportMapError)
+    assert isinstance(done.exception, UserError)
     assert not list(tmp_path.iterdir())
 
 
