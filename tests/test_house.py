@@ -53,13 +53,13 @@ CEILINGS = {
     "schemas": (84, 0, 0),
     "serve": (2597, 22, 0),
     "service": (393, 4, 0),
-    "studies": (12490, 111, 76),
+    "studies": (12488, 111, 76),
     "tasking": (5550, 124, 0),
     "tasks": (15, 0, 0),
-    "tests": (62414, 123, 0),
+    "tests": (62413, 123, 0),
     "traffic": (11441, 77, 0),
     "view": (1771, 15, 0),
-    "beside them": (299, 18, 0),
+    "beside them": (284, 15, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
