@@ -17,9 +17,8 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from automotive_cosim.cli.batches import numbers_in, whole_numbers_in, words
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.formats.annotations import OneOf
+from automotive_cosim.formats.annotations import OneOf, option_name, shown_as
 from automotive_cosim.formats.docs import inherited_field_docs
-from automotive_cosim.formats.options import option_name, shown_as
 
 F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")

@@ -30,7 +30,7 @@ from automotive_cosim.contracts.given import PLACE, GeoInput
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.settings import ANYWHERE, DEFAULT_TASK, EpisodeSettings
 from automotive_cosim.errors import InfrastructureError, UserError
-from automotive_cosim.formats.options import option
+from automotive_cosim.formats.annotations import option
 from automotive_cosim.run.settings import SingleSettings
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.cockpit.calls import function_named
-from automotive_cosim.cockpit.numbers import number_in, whole_in
+from automotive_cosim.cockpit.functions import number_in, whole_in
 from automotive_cosim.contracts import (
     UNCALLED,
     Action,

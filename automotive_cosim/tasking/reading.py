@@ -37,7 +37,6 @@ from automotive_cosim.formats.checked import Steps
 from automotive_cosim.formats.toml import Document
 from automotive_cosim.tasking import notation
 from automotive_cosim.tasking.checks import Check, NothingDone
-from automotive_cosim.tasking.lexicon import Lexicon
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.notation import (
     PLACEHOLDER,
@@ -49,7 +48,7 @@ from automotive_cosim.tasking.notation import (
     signal_named,
 )
 from automotive_cosim.tasking.parameters import Choices, FromCockpit, Param
-from automotive_cosim.tasking.speech import Speech
+from automotive_cosim.tasking.speech import Lexicon, Speech
 from automotive_cosim.tasking.task import Basis, Half, Start, Task
 from automotive_cosim.tasking.triggers import TriggerCondition
 

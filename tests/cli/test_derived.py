@@ -21,9 +21,8 @@ from automotive_cosim.doors.settings import A2aSettings, McpSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.episode.settings import EpisodeSettings
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.annotations import OneOf, Option
+from automotive_cosim.formats.annotations import OneOf, Option, option
 from automotive_cosim.formats.docs import inherited_field_docs
-from automotive_cosim.formats.options import option
 from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.proof.settings import ProofSettings
 from automotive_cosim.report.settings import CompareSettings
