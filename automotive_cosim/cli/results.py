@@ -11,7 +11,7 @@ import typer
 
 from automotive_cosim.cli.options import AsJson, print_json, reads_results
 from automotive_cosim.contracts.plain import clock, counted
-from automotive_cosim.errors import UserError, install_hint
+from automotive_cosim.errors import install_hint
 
 if TYPE_CHECKING:
     from automotive_cosim.run.attribution import ActEffect
@@ -106,27 +106,14 @@ def replay(
         list[int] | None,
         typer.Option(help="Leave out what this step commanded, and say what that changes; may be repeated."),
     ] = None,
-    play: Annotated[
-        bool,
-        typer.Option("--play", help="Print the recorded steps instead, four times as fast; of `run` alone."),
-    ] = False,
-    film: Annotated[
-        Path | None,
-        typer.Option(help="Write the recorded screens as an animation instead, .webp or .gif; of `run` alone."),
-    ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Replay the actions of a stored trial and compare the traces, or play back its record.
+    """Replay the actions of a stored trial and compare the traces.
 
-    Exit code 1 if the traces differ. With --play or --film, show what was recorded; nothing runs again.
+    Exit code 1 if the traces differ.
     """
     from automotive_cosim.run.rerun import rerun
 
-    if play or film is not None:
-        if episode or as_json:
-            raise UserError("--play and --film show the record of one `run`; omit the episode and --json")
-        _show_record(folder, film)
-        return
     if without:
         from automotive_cosim.run.attribution import attribute as measured
 
@@ -146,28 +133,3 @@ def replay(
         )
         raise typer.Exit(1)
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
-
-
-SPEED = 4.0
-"""How many times as fast as recorded ``--play`` and ``--film`` are."""
-
-
-def _show_record(folder: Path, film: Path | None) -> None:
-    """Prints a record step by step, at its pace, or writes its screens as an animation."""
-    from time import sleep
-
-    from automotive_cosim.report.playback import frames, write_film
-
-    if film is not None and film.suffix not in (".webp", ".gif"):
-        raise UserError(f"{film} is not an animation; give --film a name ending in .webp or .gif")
-    shown = list(frames(folder))
-    if film is not None:
-        write_film(shown, film, SPEED)
-        typer.echo(f"{film} written, {counted(len(shown), 'step')}")
-        return
-    before_s = 0.0
-    for frame in shown:
-        sleep((frame.since_s - before_s) / SPEED)
-        before_s = frame.since_s
-        typer.echo(frame.words)
-        typer.echo(f"     {frame.picture}")
