@@ -44,8 +44,6 @@ class _ContextSettings:
     """WMO weather code as Open-Meteo uses it."""
     visibility_m: Annotated[float | None, Ge(0), Le(1e6), Option("visibility", form="M")] = None
     """Visibility in metres, instead of the usual one for the weather code."""
-    draw: Annotated[int | None, Option(form="SEED")] = None
-    """Seed to draw the weather from the climate of the place and month."""
     online: bool = False
     """Ask Open-Meteo for the weather; if that fails, use the climate."""
     road: str = ""
@@ -109,7 +107,7 @@ def _weather(told: _ContextSettings, lat: float, lon: float, local_time: datetim
     from automotive_cosim.geo.climate import climate_norm
     from automotive_cosim.geo.weather import typical_weather
 
-    if told.draw is not None or told.online:
+    if told.online:
         return _report(told, lat, lon, local_time)
     if told.weather is None:
         if told.visibility_m is not None:
@@ -125,12 +123,8 @@ def _report(told: _ContextSettings, lat: float, lon: float, local_time: datetime
     from automotive_cosim.geo.forecast import Climate, OpenMeteo
 
     if told.weather is not None:
-        raise UserError("--weather sets the weather; omit --draw and --online")
-    seed = told.draw or 0
-    if seed < 0:
-        raise UserError(f"--draw {seed} is not a seed; give a whole number from 0")
-    source = OpenMeteo(Climate(seed)) if told.online else Climate(seed)
-    report = source.report(lon, lat, local_time)
+        raise UserError("--weather sets the weather; omit --online")
+    report = OpenMeteo(Climate(0)).report(lon, lat, local_time)
     if report.note:
         typer.echo(report.note, err=True)
     return report.weather

@@ -71,9 +71,7 @@ def test_times_are_the_places_own(time: str, local: str) -> None:
         (("0", "0", "--time", "yesterday"), "not a date and time"),
         (("0", "0", "--weather", "4"), "weather code 4 is not one of"),
         (("0", "0", "--visibility", "40"), "--visibility requires --weather"),
-        (("48.8", "2.3", "--draw", "1", "--weather", "3"), "omit --draw"),
-        (("48.8", "2.3", "--draw=-1"), "is not a seed"),
-        (("40", "-30", "--draw", "1"), "no climate is known"),
+        (("48.8", "2.3", "--online", "--weather", "3"), "omit --online"),
         (("0", "0", "--rules", "/no/such/folder"), "is not a folder"),
         (("0", "0", "--rules", str(Path(__file__).parent)), "has no rule files"),
         (("0", "0", "--road", "spaceway"), "no road class named 'spaceway'"),
@@ -117,18 +115,11 @@ def test_own_rules(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert text.startswith("Place: Sakartvelo (GE)")
 
 
-def test_weather_may_be_drawn_by_seed() -> None:
-    place = ("48.82", "2.34", "--time", "2026-01-20T10:00")
-    first, again, other = (_run(*place, "--draw", seed) for seed in ("1", "1", "2"))
-    assert first == again != other
-    assert "Weather: unknown" not in first
-
-
 def test_online_without_a_service_falls_back_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("no_proxy", "*")
     monkeypatch.setattr(OpenMeteo.__init__, "__defaults__", ("http://127.0.0.1:9/", 1.0))
     place = ("48.82", "2.34", "--time", "2026-01-20T10:00")
-    result = CliRunner().invoke(APP, [*place, "--online", "--draw", "7"], catch_exceptions=False)
+    result = CliRunner().invoke(APP, [*place, "--online"], catch_exceptions=False)
     assert "Open-Meteo cannot be reached" in result.stderr
-    assert "drawn from the climate of Paris (Montsouris) (seed 7) instead" in result.stderr
-    assert result.stdout == _run(*place, "--draw", "7")
+    assert "drawn from the climate of Paris (Montsouris) (seed 0) instead" in result.stderr
+    assert "Weather: unknown" not in result.stdout
