@@ -67,10 +67,7 @@ def run_with(
     """Runs one trial, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
     Args:
-        agent: who acts.
-        job: what to run.
         folder: the evaluation's.
-        pictures: whether to keep screenshots and road.
         simulations: warm simulations to use.
         observers: notified before anything is kept.
 
@@ -115,10 +112,7 @@ def agent_for(
 
     Args:
         name: as in ``make_agent``, like the model.
-        model: its model.
         settings: what it is given, and the seed of an agent that draws.
-        limits: of its process and its tokens.
-        fork_server: starts its process.
         meter: what it shares with the evaluation's other workers.
 
     Raises:

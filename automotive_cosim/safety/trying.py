@@ -168,7 +168,6 @@ def trying(
     """Opens a folder, new or to be resumed.
 
     Args:
-        space: what is searched.
         plan: the agent, its model and limits.
         folder: where the trials are kept.
         runner: runs a trial; None runs it with the agent of its name.
