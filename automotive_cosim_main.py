@@ -1,6 +1,6 @@
 """The console script ``automotive-cosim``: Ctrl-C while the command line still loads ends it in silence.
 
-It stands beside the package because importing anything in the package imports gymnasium first, which takes a while.
+It stands beside the package because the command line takes a while to import.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import sys
 from contextlib import suppress
 
 LOADING = {
-    "run": "tasks and agents", "eval": "tasks and agents", "drive": "drives and agents", "search": "drives",
+    "run": "tasks and agents", "eval": "tasks and agents", "search": "drives",
     "study": "scenarios and agents", "bench": "scenarios", "measures": "drives", "report": "results",
     "compare": "results", "export": "results", "replay": "results", "scenarios calibrate": "counts",
     "scenarios check": "scenarios", "scenarios equilibrate": "scenarios", "scenarios import": "the importer",

@@ -22,7 +22,7 @@ from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.episode.conditions import TABLE
-from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
+from automotive_cosim.exchange.catalogs import CARRIED, DIFFERENT, REFUSED, table
 from automotive_cosim.formats.bounds import READERS
 from automotive_cosim.formats.docs import field_docs, member_docs
 from automotive_cosim.interface import spaces
@@ -91,8 +91,10 @@ def _conditions() -> str:
 
 
 def _families() -> str:
-    rows = [(f"`{each.id}`", each.season, each.about, ", ".join(each.cast)) for each in FAMILIES.values()]
-    return _table(("family", "season", "what it is", "what is staged"), rows)
+    return _table(
+        ("family", "season", "what it is"),
+        [(f"`{each.id}`", each.season, each.about) for each in FAMILIES.values()],
+    )
 
 
 def _kinds() -> str:

@@ -23,9 +23,9 @@ from automotive_cosim.cli import (
     bench,
     compare,
     doctor,
-    drive,
     evaluate,
     export,
+    keep,
     mcp,
     measures,
     publish,
@@ -54,11 +54,11 @@ app = typer.Typer(
     name="automotive-cosim",
     help="Agents that operate the cockpit of a car in live SUMO traffic.",
     no_args_is_help=True,
+    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command(rich_help_panel=RUN)(run.run)
-app.command(rich_help_panel=RUN)(drive.drive)
 app.command("eval", rich_help_panel=RUN)(evaluate.evaluate)
 app.command(rich_help_panel=RUN)(search.search)
 app.command(rich_help_panel=READ)(serve.serve)
@@ -75,6 +75,7 @@ app.add_typer(agents.app, name="agents", rich_help_panel=CONTENTS)
 app.add_typer(show.app, name="show", rich_help_panel=CONTENTS)
 app.command(rich_help_panel=TOOLS)(doctor.doctor)
 app.command(rich_help_panel=TOOLS)(bench.bench)
+app.command(rich_help_panel=TOOLS)(keep.keep)
 app.command(rich_help_panel=TOOLS)(mcp.mcp)
 app.command(rich_help_panel=TOOLS)(a2a.a2a)
 for extension in extensions():

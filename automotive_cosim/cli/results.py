@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, print_json, reads_results
 from automotive_cosim.contracts.plain import clock, counted
-from automotive_cosim.errors import UserError, install_hint
-from automotive_cosim.report.settings import PlaybackSettings
+from automotive_cosim.errors import install_hint
 
 if TYPE_CHECKING:
-    from automotive_cosim.run.attribution import ActEffect
+    from automotive_cosim.run.effect import ActEffect
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 
@@ -69,11 +67,11 @@ def _safety(folder: Path, agent: str) -> None:
     page, pdf = write_dossier(folder, subject.agent)
     beside = f" (--agent takes one of the others: {', '.join(subject.others)})" if subject.others else ""
     typer.echo(f"{page} written, about {subject.agent}{beside}; its data in {page.parent / 'data'}")
-    typer.echo(f"{pdf} written" if pdf else f"no PDF: {install_hint('reports')}")
+    typer.echo(f"{pdf} written" if pdf else f"no PDF: it needs the extra safety, {install_hint('safety')}")
 
 
 TrialFolder = Annotated[
-    Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)
+    Path, typer.Argument(help="Results folder of `run`, `eval`, `search` or `study`.", show_default=False)
 ]
 TrialId = Annotated[
     str,
@@ -87,13 +85,17 @@ TrialId = Annotated[
 def attribute(folder: TrialFolder, episode: TrialId = "", as_json: AsJson = False) -> None:
     """Measure what each act of a stored trial changed, by leaving it out, and add that to its page.
 
-    Acts that change nothing alone are also left out in pairs.
+    Acts that change nothing alone are also left out in pairs. Of a rerouting study, it tells of each decision.
     """
     from automotive_cosim.formats.layout import PAGE
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.attribution import attribute as measured
+    from automotive_cosim.run.extensions import kind_of
+    from automotive_cosim.run.store import read_manifest
+    from automotive_cosim.run.trial_folder import is_trial
 
-    effects = measured(folder, episode)
+    kind = None if is_trial(folder) else kind_of(read_manifest(folder)["plan"])
+    effects = measured(folder, episode) if kind is None else kind.effects(folder, episode)
     if (folder / PAGE).is_file():
         write_page(folder)
     _tell_effects(effects, as_json=as_json)
@@ -114,7 +116,6 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
 
 
 @reads_results
-@takes(PlaybackSettings)
 def replay(
     folder: TrialFolder,
     episode: TrialId = "",
@@ -123,20 +124,13 @@ def replay(
         typer.Option(help="Leave out what this step commanded, and say what that changes; may be repeated."),
     ] = None,
     as_json: AsJson = False,
-    **settings: Any,
 ) -> None:
-    """Replay the actions of a stored trial and compare the traces, or play back its record.
+    """Replay the actions of a stored trial and compare the traces.
 
-    Exit code 1 if the traces differ. With --play or --film, show what was recorded; nothing runs again.
+    Exit code 1 if the traces differ.
     """
     from automotive_cosim.run.rerun import rerun
 
-    shown = filled(PlaybackSettings, settings)
-    if shown.play or shown.film is not None:
-        if episode or as_json:
-            raise UserError("--play and --film show the record of one `run`; omit the episode and --json")
-        _show_record(folder, shown.film, shown.speed)
-        return
     if without:
         from automotive_cosim.run.attribution import attribute as measured
 
@@ -156,24 +150,3 @@ def replay(
         )
         raise typer.Exit(1)
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
-
-
-def _show_record(folder: Path, film: Path | None, speed: float) -> None:
-    """Prints a record step by step, at its pace, or writes its screens as an animation."""
-    from time import sleep
-
-    from automotive_cosim.report.playback import frames, write_film
-
-    if film is not None and film.suffix not in (".webp", ".gif"):
-        raise UserError(f"{film} is not an animation; give --film a name ending in .webp or .gif")
-    shown = list(frames(folder))
-    if film is not None:
-        write_film(shown, film, speed)
-        typer.echo(f"{film} written, {counted(len(shown), 'step')}")
-        return
-    before_s = 0.0
-    for frame in shown:
-        sleep((frame.since_s - before_s) / speed)
-        before_s = frame.since_s
-        typer.echo(frame.words)
-        typer.echo(f"     {frame.picture}")

@@ -14,7 +14,6 @@ def noticed(drive: Drive, changed: Sequence[str] = (), wakes: Sequence[Wake] = W
     Args:
         drive: the moments so far.
         changed: names of what has changed since the last look; of those that are no longer there, that they ended.
-        wakes: what is read.
     """
     lines = []
     for wake in wakes:
@@ -54,9 +53,9 @@ class Alarm:
         found = []
         now_s = drive[-1].time_s
         for wake in self.wakes:
-            told = self._told.setdefault(wake.name, _Told())
-            reading = _risen(wake.reads(drive), told.reading)
-            if reading == told.reading:
+            told = self._told.get(wake.name) or self._told.setdefault(wake.name, _Told())
+            reading = wake.reads(drive)
+            if reading == told.reading or (reading := _risen(reading, told.reading)) == told.reading:
                 told.differs_since_s = None
                 continue
             if told.differs_since_s is None:

@@ -7,22 +7,70 @@ suits simple readers: ``Speed limit here: 50 km/h (posted on Avenue Foch)``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
-from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, limits, other_rules
+from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, said_at
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
-from automotive_cosim.geo.relevance import can_matter
 from automotive_cosim.geo.rulefacts import RuleFacts
 from automotive_cosim.geo.rules import TOPICS, Rule, Value
 from automotive_cosim.geo.sun import Sun, sun_at
 from automotive_cosim.geo.text import BUDGET_TOKENS, KM_PER_MILE, Line, amount_of_speed, position, within_budget
 from automotive_cosim.geo.weather import visibility_class
 from automotive_cosim.geo.weather import words as weather_words
+
+WINTER_BELOW_C = 7.0
+"""Where winter tyres grip better than summer tyres, as tyre makers say."""
+WARM_FROM_C = 22.0
+"""From here on a driver may want to be cooled; our choice, well below the 26 degrees of EN 16798-1."""
+_HIDING = frozenset(("drizzle", "dust", "fog", "precipitation"))
+"""Weather in which less is seen."""
+
+
+def _hidden(now: RuleFacts) -> bool:
+    return now.phenomena is None or not _HIDING.isdisjoint(now.phenomena)
+
+
+def _in_town(now: RuleFacts) -> bool:
+    return now.built_up is not False
+
+
+def _off_motorways(now: RuleFacts) -> bool:
+    return now.motorway is not True
+
+
+def _wide(now: RuleFacts) -> bool:
+    return now.motorway is not False or now.dual_carriageway is not False or now.lanes >= 2
+
+
+_ONLY_IF: Mapping[str, Callable[[RuleFacts], bool]] = {
+    "front_fog": _hidden,
+    "rear_fog": _hidden,
+    "high_beam": lambda now: now.after_sunset is not False or now.tunnel or _hidden(now),
+    "emergency_corridor": _wide,
+    "turn_on_red": _off_motorways,
+    "bus_lane": _off_motorways,
+    "through_traffic": _off_motorways,
+    "low_emission": _in_town,
+    "school_zone": _off_motorways,
+    "idling": lambda now: now.standing,
+    "alcohol": lambda now: False,  # nothing that is done at the wheel depends on it
+    "seat_belts": lambda now: False,  # they are fastened before the drive
+}
+"""Topics that do not always matter; unknown conditions count as if they could hold."""
+
+
+def can_matter(topic: str, now: RuleFacts, air_c: float | None) -> bool:
+    """Whether a topic of ``rules.TOPICS`` can matter by these facts, with that air temperature outside."""
+    if topic in ("winter_tyres", "studs", "cold"):
+        return air_c is None or air_c < WINTER_BELOW_C
+    if topic == "heat":
+        return air_c is None or air_c >= WARM_FROM_C
+    return topic not in _ONLY_IF or _ONLY_IF[topic](now)
 
 
 @dataclass(frozen=True)
@@ -48,7 +96,6 @@ class GeoContext:
 
     @property
     def speed_kmh(self) -> float:
-        """Speed of the car."""
         return self.driving.speed_mps * KMH_PER_MPS
 
     @property
@@ -61,7 +108,7 @@ class GeoContext:
         """Country, region, city, and whose rules apply.
 
         Raises:
-            GeoDataError: a rule file of the country is invalid.
+            UserError: a rule file of the country is invalid.
         """
         return NOWHERE if self.gps is None else self.atlas.place(self.gps.lon_deg, self.gps.lat_deg)
 
@@ -95,17 +142,17 @@ class GeoContext:
     def default_limits(self) -> tuple[AppliedRule, ...]:
         """The legal limits for this road: several if the network does not determine which, none if no law is
         known."""
-        return tuple(found for found in self._limits if found.rule.fixed)
+        return tuple(found for found in self._said[0] if found.rule.fixed)
 
     @cached_property
     def reduced_limits(self) -> tuple[AppliedRule, ...]:
         """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
-        return tuple(found for found in self._limits if not found.rule.fixed)
+        return tuple(found for found in self._said[0] if not found.rule.fixed)
 
-    @cached_property
+    @property
     def rules(self) -> tuple[AppliedRule, ...]:
         """The other topics, in the order of ``rules.TOPICS``."""
-        return tuple(other_rules(self.place, self._facts))
+        return self._said[1]
 
     @cached_property
     def country(self) -> str:
@@ -157,8 +204,8 @@ class GeoContext:
         return facts_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
 
     @cached_property
-    def _limits(self) -> tuple[AppliedRule, ...]:
-        return tuple(limits(self.place, self._facts))
+    def _said(self) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
+        return said_at(self.place, self._facts)
 
 
 def answer(rule: Rule, context: GeoContext) -> Value | None:
@@ -194,7 +241,7 @@ def _lines(context: GeoContext) -> Iterator[Line]:
     if context.place.law:
         law = context.place.law
         yield Line(f"Country: traffic keeps {law.driving_side}; emergency call {', '.join(law.emergency)}", "place")
-    yield from (Line(_rule(found.rule), found.rule.id) for found in context.rules)
+    yield from (Line(found.rule.line, found.rule.id) for found in context.rules)
 
 
 def _place(context: GeoContext) -> str:
@@ -252,11 +299,11 @@ def _limits(context: GeoContext) -> Iterator[Line]:
     if not context.default_limits:
         yield Line("Default limit: unknown", "road")
     for found in context.default_limits:
-        yield Line(_rule(found.rule), found.rule.id)
+        yield Line(found.rule.line, found.rule.id)
     for found in context.reduced_limits:
         if not _is_lower(found, context):
             continue
-        yield Line(_rule(found.rule, "Reduced limit"), found.rule.id)
+        yield Line(f"Reduced limit: {found.rule.stated}", found.rule.id)
 
 
 def _is_lower(reduced: AppliedRule, context: GeoContext) -> bool:
@@ -273,10 +320,6 @@ def _kmh(limit: Rule) -> float:
     if isinstance(value, str):
         return float("inf")
     return value * KM_PER_MILE if limit.unit == "mph" else value
-
-
-def _rule(rule: Rule, label: str = "") -> str:
-    return f"{label or TOPICS[rule.topic]}: {rule.stated}"
 
 
 def _time(context: GeoContext) -> str:
