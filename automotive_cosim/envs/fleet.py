@@ -1,0 +1,186 @@
+"""Drives of several cars in one traffic, as PettingZoo's ``ParallelEnv``: ``AutomotiveCosim/Fleet-v0``.
+
+Every car is an environment of drives (``DriveEnv`` or ``FlatDriveEnv``) with its cockpit, its driver and its judge;
+what they share is the road. A fleet of one is that environment, step by step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+
+from automotive_cosim.contracts import Action
+from automotive_cosim.drives.departure import beside, ego_plan, scenario_of
+from automotive_cosim.drives.script import DriveScript
+from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.envs.base import Stepped, action_of
+from automotive_cosim.envs.drive import DriveEnv, DrivesEnv
+from automotive_cosim.envs.flat_drive import ACTIONS, FlatDriveEnv
+from automotive_cosim.envs.numbers import number_of
+from automotive_cosim.episode.fleet import Fleet
+from automotive_cosim.errors import ActionError, SetupError, UserError, install_hint
+from automotive_cosim.traffic.fork import RemoteRoad, RemoteTraffic
+from automotive_cosim.traffic.sumo import EGO
+
+try:
+    import pettingzoo
+except ImportError as missing:
+    raise SetupError(f"fleets require pettingzoo: {install_hint('rl')}") from missing
+
+Parts = tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]
+
+
+class FleetEnv(pettingzoo.ParallelEnv[str, Any, Any]):
+    """Several cars, each on a drive of its own, in one traffic.
+
+    The first car departs at ``reset``; its seed's drive gives the traffic, the hour and the weather. The others are
+    sent at the same time and enter as soon as each finds a gap: from then on they are in ``agents``. A car whose
+    drive is over leaves ``agents`` for good and goes on in the traffic without a cockpit. Observations, actions,
+    rewards and what ``infos`` holds are those of the car's environment.
+
+    A step ends as soon as a car has done its action. A car whose action takes longer is marked in its info as
+    ``busy``, has its last observation and reward 0, and what is given for it is not looked at until it is free.
+
+    Seeds: ``reset(seed=s)`` lets car ``i`` drive what its environment alone drives with seed ``s + i``.
+    """
+
+    metadata = {  # noqa: RUF012, PettingZoo's own form
+        "name": "AutomotiveCosim/Fleet-v0",
+        "render_modes": ["rgb_array"],
+        "is_parallelizable": True,
+    }
+
+    def __init__(
+        self, cars: int = 2, *, flat: bool = False, render_mode: str | None = None, **options: Any
+    ) -> None:
+        """Makes the environments of the cars; nothing runs before ``reset``.
+
+        Args:
+            cars: how many, at least one.
+            flat: whether each is a ``FlatDriveEnv``, with numbers for learning, instead of a ``DriveEnv``.
+            render_mode: ``"rgb_array"`` or None.
+            options: of these environments.
+
+        Raises:
+            UserError: there is no car, or an option is wrong.
+        """
+        if cars < 1:
+            raise UserError(f"a fleet of {cars} cars was asked for; it needs at least one")
+        kind: type[DrivesEnv[Any, Any]] = FlatDriveEnv if flat else DriveEnv
+        self.render_mode = render_mode
+        self.possible_agents = [f"car_{number}" for number in range(cars)]
+        self.agents: list[str] = []
+        self.envs = {car: kind(render_mode=render_mode, **options) for car in self.possible_agents}
+        self.observation_spaces = {car: env.observation_space for car, env in self.envs.items()}
+        self.action_spaces = {car: env.action_space for car, env in self.envs.items()}
+        self._is_flat = flat
+        self._fleet: Fleet[Stepped[Any]] = Fleet()
+        self._coming: dict[str, tuple[str, DriveSpec, DriveScript]] = {}
+        """By SUMO's id, the cars that have been sent and have not entered."""
+        self._seen: dict[str, Any] = {}
+
+    def observation_space(self, agent: str) -> gym.spaces.Space[Any]:
+        """What a car observes."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> gym.spaces.Space[Any]:
+        """What a car can do."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+        """Lets the first car depart and sends the others; ``options`` are not used.
+
+        Raises:
+            UserError: the drives of the cars are on different roads.
+            InfrastructureError: no gap opened for the first car, or the traffic simulation failed.
+        """
+        self._fleet, self._coming, self._seen = Fleet(), {}, {}
+        specs = {
+            car: env.draw(None if seed is None else seed + number)
+            for number, (car, env) in enumerate(self.envs.items())
+        }
+        first, *others = self.possible_agents
+        script = specs[first].script
+        seen, info = self.envs[first].depart(specs[first], script)
+        self._first, self._departed_s = script, self._session_s(first)
+        for number, car in enumerate(others, start=1):
+            own = beside(specs[car].script, script, 0.0)
+            self._coming[f"{EGO}.{number}"] = car, specs[car], own
+            self._road.send(f"{EGO}.{number}", ego_plan(own, scenario_of(own)))
+        self.agents = [first]
+        self._seen = {first: seen}
+        return {first: seen}, {first: info}
+
+    def step(self, actions: Mapping[str, Any]) -> Parts:
+        """Lets every free car act, and the road run until one is free again.
+
+        Raises:
+            ActionError: an action is malformed; nothing has happened in any car.
+            ResetNeeded: no car is in the traffic.
+            TrafficError: the traffic simulation failed.
+        """
+        if not self.agents:
+            raise gym.error.ResetNeeded("no car is in the traffic; call reset()")
+        free = [car for car in self.agents if car not in self._fleet.busy]
+        if missing := [car for car in free if car not in actions]:
+            raise ActionError(f"no action is given for {', '.join(missing)}; give one for every car in agents")
+        chosen = {car: self._checked(actions[car]) for car in free}
+        for car in free:
+            env = self.envs[car]
+            self._fleet.begin(car, env.episode, env.stepping(chosen[car]))
+        done = self._fleet.run()
+        told: Parts = ({}, {}, {}, {}, {})
+        for car in self.agents:
+            busy = self._seen[car], 0.0, False, False, {"busy": True}
+            for part, value in zip(told, done.get(car, busy), strict=True):
+                part[car] = value  # type: ignore[assignment]
+        for traffic in self._road.entered():
+            self._enter(traffic, told)
+        self._seen = told[0]
+        self.agents = [car for car in self.possible_agents if car in told[0] and not (told[2][car] or told[3][car])]
+        return told
+
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """The screens of the cars in the traffic side by side, (height, width, 3), or None without a render mode; a
+        screen is drawn only when looked at."""
+        if not self.render_mode or not self.agents:
+            return None
+        return np.concatenate([self.envs[car].episode.screenshot() for car in self.agents], axis=1)
+
+    def close(self) -> None:
+        """Ends the drives and, if nobody else shares them, the warm simulations."""
+        self.agents = []
+        for env in self.envs.values():
+            env.close()
+
+    @property
+    def _road(self) -> RemoteRoad:
+        first = self.envs[self.possible_agents[0]].episode.world.traffic.wrapped
+        assert isinstance(first, RemoteTraffic)
+        return first.road
+
+    def _session_s(self, car: str) -> float:
+        return self.envs[car].episode.world.moment.time_s
+
+    def _checked(self, action: Any) -> Any:
+        """An action that has been tried against its form."""
+        if self._is_flat:
+            return np.int64(number_of(action, len(ACTIONS)))
+        return action if isinstance(action, Action) else action_of(action)
+
+    def _enter(self, traffic: RemoteTraffic, told: Parts) -> None:
+        """Puts the agent of a car that has entered the traffic into its cockpit."""
+        car, spec, script = self._coming.pop(traffic.car)
+        script = beside(script, self._first, traffic.state.time_s - self._departed_s)
+        seen, info = self.envs[car].depart(spec, script, traffic)
+        for part, value in zip(told, (seen, 0.0, False, False, info), strict=True):
+            part[car] = value  # type: ignore[assignment]
+
+
+pettingzoo.register("parallel", FleetEnv.metadata["name"], f"{__name__}:FleetEnv")

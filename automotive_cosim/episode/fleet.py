@@ -1,0 +1,69 @@
+"""Several sessions whose cars share a road: each acts at instants of its own, and the road runs once for all.
+
+What a car asks the road for at an instant is asked for before the road runs on. So a session goes on to its next
+tick, waits there until every car has come as far, and only then drives.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from automotive_cosim.episode.session import Passing, Session
+
+R = TypeVar("R")
+
+
+@dataclass(slots=True)
+class _Act(Generic[R]):
+    """What a car is doing."""
+
+    session: Session
+    passing: Passing[R]
+    wakes_s: float = 0.0
+    """Simulation time at which it goes on."""
+
+
+class Fleet(Generic[R]):
+    """What the cars of a road are doing, each from one of its instants to another."""
+
+    def __init__(self) -> None:
+        """Begins with nobody doing anything."""
+        self._acts: dict[str, _Act[R]] = {}
+        self._done: dict[str, R] = {}
+
+    @property
+    def busy(self) -> frozenset[str]:
+        """The cars that are doing something."""
+        return frozenset(self._acts)
+
+    def begin(self, car: str, session: Session, passing: Passing[R]) -> None:
+        """Lets a car do something; what it does at this instant is done at once."""
+        self._acts[car] = _Act(session, passing)
+        self._go_on(car)
+
+    def run(self) -> dict[str, R]:
+        """Lets the road run until a car has done what it was doing; the results of those that have.
+
+        Raises:
+            TrafficError: the traffic simulation failed.
+        """
+        while self._acts and not self._done:
+            first = min(self._acts.values(), key=lambda act: act.wakes_s)
+            until_s = first.wakes_s + first.session.world.traffic.step_s / 2
+            for car in [car for car, act in self._acts.items() if act.wakes_s <= until_s]:
+                self._go_on(car)
+        done, self._done = self._done, {}
+        return done
+
+    def _go_on(self, car: str) -> None:
+        """Lets a car do what is due up to its next tick."""
+        act = self._acts[car]
+        try:
+            tick_s = next(act.passing)
+        except StopIteration as over:
+            del self._acts[car]
+            self._done[car] = over.value
+        else:
+            step_s = act.session.world.traffic.step_s
+            act.wakes_s = act.session.world.moment.time_s + round(tick_s / step_s) * step_s
