@@ -1,9 +1,10 @@
 """Automotive-ENV coupled to live SUMO traffic: a benchmark for agents that work a car's cockpit.
 
-Importing the package registers four environments with gymnasium: ``AutomotiveCosim/Cockpit-v0`` for tasks,
+Importing the package registers five environments with gymnasium: ``AutomotiveCosim/Cockpit-v0`` for tasks,
 ``AutomotiveCosim/Drive-v0`` for drives, and for reinforcement learning ``AutomotiveCosim/Flat-v0`` on tasks and
-``AutomotiveCosim/FlatDrive-v0`` on drives. The names in ``__all__`` are what most programs need; each is loaded
-when it is first used. ``docs/reference/api.md`` lists everything that is public.
+``AutomotiveCosim/FlatDrive-v0`` on drives, and ``AutomotiveCosim/Fleet-v0`` for several cars in one traffic. The
+names in ``__all__`` are what most programs need; each is loaded when it is first used.
+``docs/reference/api.md`` lists everything that is public.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ gymnasium.register(
     vector_entry_point="automotive_cosim.envs.vector:cockpits",
 )
 gymnasium.register(id="AutomotiveCosim/Drive-v0", entry_point="automotive_cosim.envs.drive:DriveEnv")
+gymnasium.register(id="AutomotiveCosim/Fleet-v0", vector_entry_point="automotive_cosim.envs.fleet:FleetVectorEnv")
 gymnasium.register(id="AutomotiveCosim/FlatDrive-v0", entry_point="automotive_cosim.envs.flat_drive:FlatDriveEnv")
 gymnasium.register(
     id="AutomotiveCosim/Flat-v0",

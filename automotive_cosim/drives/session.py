@@ -90,6 +90,8 @@ class DriveSession(JudgedSession):
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
+    judged: bool = True
+    """Whether it is compared with drives with nobody at the cockpit, and judged; each of those is a simulation."""
     _against: Against | None = None
     _given: int = 0
     _asked: int = 0
@@ -101,6 +103,8 @@ class DriveSession(JudgedSession):
         world: CoSimulation,
         setup: SessionSetup,
         observer: Observer | None = None,
+        *,
+        judged: bool = True,
     ) -> Self:
         """The session that begins at the present moment of a drive, and takes it over.
 
@@ -108,13 +112,14 @@ class DriveSession(JudgedSession):
             world: the running drive.
             setup: the agent's input, and the duration as ``max_sim_s``.
             observer: notified of every second that passes.
+            judged: whether it is judged at its end.
 
         Raises:
             TrafficError: the traffic simulation failed.
         """
         orders = ORDERS_WITH_ERRANDS if world.car.errands else STANDING_ORDERS
         begun: dict[str, Any] = beginning(world, orders[setup.conditions.language], setup, (), observer)
-        session = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm())
+        session = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm(), judged=judged)
         session._note(world.moment)
         session._read()
         return session
@@ -162,7 +167,7 @@ class DriveSession(JudgedSession):
 
     @property
     def _copies(self) -> Sequence[Baseline]:
-        return (self.baseline, *(twin.copy for twin in self.twins))
+        return (self.baseline, *(twin.copy for twin in self.twins)) if self.judged else ()
 
     def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Passing[Feedback]:
         """Lets an action's time pass: a wait lasts until something wakes."""
@@ -240,7 +245,7 @@ class DriveSession(JudgedSession):
         names = tuple(change.name for change in changes if change.wakes)
         if names:
             self.woken.append((moment.time_s, names))
-        for event in self.tracker.see(self.moments):
+        for event in self.tracker.see(self.moments) if self.judged else ():
             if not event.lookalike and event.obliged_s is None and not KINDS[event.kind].by_state:
                 index = len(self.tracker.events) - 1 - self.tracker.events[::-1].index(event)
                 tracker = Tracker({event.kind: KINDS[event.kind]})
@@ -292,7 +297,8 @@ class DriveSession(JudgedSession):
             yield from self._advance(max(0.0, self._left_s()))
         for twin in self.twins:
             self.due_anyway[twin.index] = twin.due_s
-        self.judgement = self._judged(self.untouched)
+        if self.judged:
+            self.judgement = self._judged(self.untouched)
         yield from super()._finish(end)
 
     def _judged(self, untouched: Sequence[DriveEvent] = ()) -> Judgement:

@@ -385,7 +385,7 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
 
     def _departed(self) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
         self._numbers, self._utility = DriveNumbers(), 0.0
-        return self._numbers.read(self._episode.observation), {}
+        return self._numbers.read(self.episode.observation), {}
 
     def number(self, action: Action) -> int | None:
         """The number of an action; the nearest of the two for a wait, None if this view has none for it."""

@@ -7,11 +7,14 @@ what they share is the road. A fleet of one is that environment, step by step.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from functools import partial
+from typing import Any, cast
 
 import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
 
 from automotive_cosim.contracts import Action
 from automotive_cosim.drives.departure import beside, ego_plan, scenario_of
@@ -22,19 +25,20 @@ from automotive_cosim.envs.drive import DriveEnv, DrivesEnv
 from automotive_cosim.envs.flat_drive import ACTIONS, FlatDriveEnv
 from automotive_cosim.envs.numbers import number_of
 from automotive_cosim.episode.fleet import Fleet
-from automotive_cosim.errors import ActionError, SetupError, UserError, install_hint
+from automotive_cosim.errors import ActionError, UserError
+from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.traffic.fork import RemoteRoad, RemoteTraffic
 from automotive_cosim.traffic.sumo import EGO
 
 try:
-    import pettingzoo
-except ImportError as missing:
-    raise SetupError(f"fleets require pettingzoo: {install_hint('rl')}") from missing
+    from pettingzoo import ParallelEnv, register
+except ImportError:  # the vector environment needs none of it
+    ParallelEnv, register = object, None
 
 Parts = tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]
 
 
-class FleetEnv(pettingzoo.ParallelEnv[str, Any, Any]):
+class FleetEnv(ParallelEnv):
     """Several cars, each on a drive of its own, in one traffic.
 
     The first car departs at ``reset``; its seed's drive gives the traffic, the hour and the weather. The others are
@@ -78,7 +82,7 @@ class FleetEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         self.observation_spaces = {car: env.observation_space for car, env in self.envs.items()}
         self.action_spaces = {car: env.action_space for car, env in self.envs.items()}
         self._is_flat = flat
-        self._fleet: Fleet[Stepped[Any]] = Fleet()
+        self._fleet: Fleet[Stepped[Any]] = Fleet(1.0)
         self._coming: dict[str, tuple[str, DriveSpec, DriveScript]] = {}
         """By SUMO's id, the cars that have been sent and have not entered."""
         self._seen: dict[str, Any] = {}
@@ -100,7 +104,7 @@ class FleetEnv(pettingzoo.ParallelEnv[str, Any, Any]):
             UserError: the drives of the cars are on different roads.
             InfrastructureError: no gap opened for the first car, or the traffic simulation failed.
         """
-        self._fleet, self._coming, self._seen = Fleet(), {}, {}
+        self._coming = {}
         specs = {
             car: env.draw(None if seed is None else seed + number)
             for number, (car, env) in enumerate(self.envs.items())
@@ -108,7 +112,8 @@ class FleetEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         first, *others = self.possible_agents
         script = specs[first].script
         seen, info = self.envs[first].depart(specs[first], script)
-        self._first, self._departed_s = script, self._session_s(first)
+        self._fleet = Fleet(self._road.step_s)
+        self._first, self._departed_s = script, self._now_s(first)
         for number, car in enumerate(others, start=1):
             own = beside(specs[car].script, script, 0.0)
             self._coming[f"{EGO}.{number}"] = car, specs[car], own
@@ -133,18 +138,13 @@ class FleetEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         chosen = {car: self._checked(actions[car]) for car in free}
         for car in free:
             env = self.envs[car]
-            self._fleet.begin(car, env.episode, env.stepping(chosen[car]))
+            self._fleet.begin(car, env.stepping(chosen[car]), partial(self._now_s, car))
         done = self._fleet.run()
-        told: Parts = ({}, {}, {}, {}, {})
-        for car in self.agents:
-            busy = self._seen[car], 0.0, False, False, {"busy": True}
-            for part, value in zip(told, done.get(car, busy), strict=True):
-                part[car] = value  # type: ignore[assignment]
-        for traffic in self._road.entered():
-            self._enter(traffic, told)
-        self._seen = told[0]
-        self.agents = [car for car in self.possible_agents if car in told[0] and not (told[2][car] or told[3][car])]
-        return told
+        told = {car: done.get(car, (self._seen[car], 0.0, False, False, {"busy": True})) for car in self.agents}
+        told |= dict(map(self._entered, self._road.entered()))
+        self._seen = {car: each[0] for car, each in told.items()}
+        self.agents = [car for car in self.possible_agents if car in told and not (told[car][2] or told[car][3])]
+        return cast(Parts, tuple({car: each[part] for car, each in told.items()} for part in range(5)))
 
     def render(self) -> npt.NDArray[np.uint8] | None:
         """The screens of the cars in the traffic side by side, (height, width, 3), or None without a render mode; a
@@ -165,7 +165,7 @@ class FleetEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         assert isinstance(first, RemoteTraffic)
         return first.road
 
-    def _session_s(self, car: str) -> float:
+    def _now_s(self, car: str) -> float:
         return self.envs[car].episode.world.moment.time_s
 
     def _checked(self, action: Any) -> Any:
@@ -174,13 +174,74 @@ class FleetEnv(pettingzoo.ParallelEnv[str, Any, Any]):
             return np.int64(number_of(action, len(ACTIONS)))
         return action if isinstance(action, Action) else action_of(action)
 
-    def _enter(self, traffic: RemoteTraffic, told: Parts) -> None:
-        """Puts the agent of a car that has entered the traffic into its cockpit."""
+    def _entered(self, traffic: RemoteTraffic) -> tuple[str, Stepped[Any]]:
+        """A car that has entered the traffic, and what its agent sees first."""
         car, spec, script = self._coming.pop(traffic.car)
         script = beside(script, self._first, traffic.state.time_s - self._departed_s)
         seen, info = self.envs[car].depart(spec, script, traffic)
-        for part, value in zip(told, (seen, 0.0, False, False, info), strict=True):
-            part[car] = value  # type: ignore[assignment]
+        return car, (seen, 0.0, False, False, info)
 
 
-pettingzoo.register("parallel", FleetEnv.metadata["name"], f"{__name__}:FleetEnv")
+if register is not None:
+    register("parallel", FleetEnv.metadata["name"], f"{__name__}:FleetEnv")
+
+
+class FleetVectorEnv(gym.vector.VectorEnv[npt.NDArray[np.float32], npt.NDArray[np.int64], npt.NDArray[Any]]):
+    """The cars of a flat fleet as gymnasium's vector environment, to train one policy for all of them.
+
+    ``infos["acted"]`` says of which cars the action counted: those in the traffic that were free. The others have
+    reward 0, and cars that are not in the traffic zeros to see. Once no car is left, the fleet departs anew in the
+    same step, on drives of another seed.
+    """
+
+    metadata = {"autoreset_mode": AutoresetMode.SAME_STEP, "render_modes": ["rgb_array"]}  # noqa: RUF012
+
+    def __init__(self, num_envs: int = 2, **options: Any) -> None:
+        """Makes the fleet; ``options`` are those of ``FlatDriveEnv``."""
+        self.fleet = FleetEnv(num_envs, flat=True, **options)
+        self.render_mode = self.fleet.render_mode
+        self.num_envs = num_envs
+        first = self.fleet.possible_agents[0]
+        self.single_observation_space = self.fleet.observation_space(first)
+        self.single_action_space = self.fleet.action_space(first)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+
+    def reset(
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
+        """Departs; ``seed`` is that of ``FleetEnv.reset``, and of all that follow."""
+        if not isinstance(seed, int | None):
+            raise UserError("the cars of a fleet share a road; give one seed, from which each car's is counted")
+        super().reset(seed=seed)
+        seen, _ = self.fleet.reset(seed)
+        return self._seen(seen), {}
+
+    def step(
+        self, actions: npt.NDArray[np.int64]
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], dict[str, Any]]:
+        """As ``FleetEnv.step``, with an entry for every car."""
+        cars, before = self.fleet.possible_agents, frozenset(self.fleet.agents)
+        chosen = {car: action for car, action in zip(cars, actions, strict=True) if car in before}
+        seen, paid, over, cut_off, infos = self.fleet.step(chosen)
+        rewards = np.array([paid.get(car, 0.0) for car in cars])
+        terminated, truncated = (np.array([each.get(car, False) for car in cars]) for each in (over, cut_off))
+        acted = np.array([car in before and not infos[car].get("busy") for car in cars])
+        info: dict[str, Any] = {"acted": acted}
+        made = self._seen(seen)
+        if not self.fleet.agents:
+            info["final_obs"] = made
+            made = self._seen(self.fleet.reset(int(self.np_random.integers(SEED_LIMIT)))[0])
+        return made, rewards, terminated, truncated, info
+
+    def render(self) -> Any:
+        """See ``FleetEnv.render``."""
+        return self.fleet.render()
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """See ``FleetEnv.close``."""
+        self.fleet.close()
+
+    def _seen(self, seen: Mapping[str, npt.NDArray[np.float32]]) -> npt.NDArray[np.float32]:
+        empty = np.zeros(self.single_observation_space.shape or (), np.float32)
+        return np.stack([seen.get(car, empty) for car in self.fleet.possible_agents])

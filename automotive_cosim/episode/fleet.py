@@ -6,10 +6,11 @@ tick, waits there until every car has come as far, and only then drives.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from automotive_cosim.episode.session import Passing, Session
+from automotive_cosim.episode.session import Passing
 
 R = TypeVar("R")
 
@@ -18,8 +19,8 @@ R = TypeVar("R")
 class _Act(Generic[R]):
     """What a car is doing."""
 
-    session: Session
     passing: Passing[R]
+    now_s: Callable[[], float]
     wakes_s: float = 0.0
     """Simulation time at which it goes on."""
 
@@ -27,8 +28,9 @@ class _Act(Generic[R]):
 class Fleet(Generic[R]):
     """What the cars of a road are doing, each from one of its instants to another."""
 
-    def __init__(self) -> None:
-        """Begins with nobody doing anything."""
+    def __init__(self, step_s: float) -> None:
+        """Begins with nobody doing anything, on a road with steps of that length."""
+        self._step_s = step_s
         self._acts: dict[str, _Act[R]] = {}
         self._done: dict[str, R] = {}
 
@@ -37,9 +39,15 @@ class Fleet(Generic[R]):
         """The cars that are doing something."""
         return frozenset(self._acts)
 
-    def begin(self, car: str, session: Session, passing: Passing[R]) -> None:
-        """Lets a car do something; what it does at this instant is done at once."""
-        self._acts[car] = _Act(session, passing)
+    def begin(self, car: str, passing: Passing[R], now_s: Callable[[], float]) -> None:
+        """Lets a car do something; what it does at this instant is done at once.
+
+        Args:
+            car: its name.
+            passing: what it does.
+            now_s: gives the simulation time to which the car has driven.
+        """
+        self._acts[car] = _Act(passing, now_s)
         self._go_on(car)
 
     def run(self) -> dict[str, R]:
@@ -49,8 +57,7 @@ class Fleet(Generic[R]):
             TrafficError: the traffic simulation failed.
         """
         while self._acts and not self._done:
-            first = min(self._acts.values(), key=lambda act: act.wakes_s)
-            until_s = first.wakes_s + first.session.world.traffic.step_s / 2
+            until_s = min(act.wakes_s for act in self._acts.values()) + self._step_s / 2
             for car in [car for car, act in self._acts.items() if act.wakes_s <= until_s]:
                 self._go_on(car)
         done, self._done = self._done, {}
@@ -65,5 +72,4 @@ class Fleet(Generic[R]):
             del self._acts[car]
             self._done[car] = over.value
         else:
-            step_s = act.session.world.traffic.step_s
-            act.wakes_s = act.session.world.moment.time_s + round(tick_s / step_s) * step_s
+            act.wakes_s = act.now_s() + round(tick_s / self._step_s) * self._step_s

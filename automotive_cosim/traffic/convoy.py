@@ -20,6 +20,8 @@ class Convoy:
         """Begins without a car."""
         self._world = world
         self._drives: dict[str, EgoDrive] = {}
+        self.chooses: Callable[[str], EgoPlan | None] | None = None
+        """Whether a vehicle that sets out gets a cockpit, and how its driver reacts then; None equips none."""
 
     def drive(self, car: str = EGO) -> EgoDrive:
         """The drive of a car.
@@ -74,7 +76,7 @@ class Convoy:
         world, roads = self._world, self._world.roads
         for _ in range(round(duration_s / world.step_s)):
             going = [(car, drive) for car, drive in self._drives.items() if not drive.has_ended]
-            if not (going or world.are_coming):
+            if not (going or world.are_coming or self.chooses):
                 break
             for car, _ in going:
                 roads[car].apply()
@@ -85,9 +87,16 @@ class Convoy:
                 if car in states:
                     states[car].append(now)
                     events[car] += passed
-            new = world.entered()
+            new = world.entered() | self._chosen()
             self._drives |= new
             entered += new
             beat()
         made = {car: Advance(tuple(instant.state for instant in states[car]), tuple(events[car])) for car in states}
         return made, entered
+
+    def _chosen(self) -> dict[str, EgoDrive]:
+        """The drives of the cars that have set out in the last step and get a cockpit."""
+        if self.chooses is None:
+            return {}
+        plans = ((car, self.chooses(car)) for car in self._world.set_out())
+        return {car: self._world.equip(car, plan) for car, plan in plans if plan is not None}

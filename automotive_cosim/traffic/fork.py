@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from weakref import WeakValueDictionary
 
 from automotive_cosim.contracts import (
     Answer,
@@ -111,6 +112,17 @@ class Forked:
         """
         answer: T = self._source.warm_call("call", call, arguments, named)
         return answer
+
+    def road(self) -> RemoteRoad:
+        """A copy of the traffic in which cars can be equipped.
+
+        Raises:
+            TrafficError: the simulation died or hung.
+        """
+        road = RemoteRoad(self._source, self._source.copied())
+        road.is_held = True
+        road.run(0.0)
+        return road
 
     def copy(self) -> RemoteCopy:
         """A copy of the traffic without an ego.
@@ -209,7 +221,12 @@ class RemoteRoad(_Remote):
         super().__init__(process)
         self.source = source
         self.step_s = source.step_s
-        self._cars: dict[str, RemoteTraffic] = {}
+        self.time_s = 0.0
+        """Simulation time to which it has run."""
+        self.is_held = False
+        """Whether it goes on without an equipped car, until it is closed."""
+        self._cars: WeakValueDictionary[str, RemoteTraffic] = WeakValueDictionary()
+        """Who drops a drive without closing it ends it as well."""
         self._entered: list[RemoteTraffic] = []
         self._started_s: float | None = None
         self.asked: list[tuple[float, str, RoadRequest]] = []
@@ -246,14 +263,14 @@ class RemoteRoad(_Remote):
 
     def take(self, car: str, state: Packed) -> RemoteTraffic:
         """The drive of a car that has entered."""
-        self._cars[car] = RemoteTraffic(self, state, car)
-        return self._cars[car]
+        traffic = self._cars[car] = RemoteTraffic(self, state, car)
+        return traffic
 
     def leave(self, car: str) -> None:
-        """A cockpit is no longer used; without one, the process ends."""
+        """A cockpit is no longer used; without one, the process ends, unless it is held."""
         if self._cars.pop(car, None) is None:
             return
-        if not self._cars or self._is_busy:
+        if (not self._cars and not self.is_held) or self._is_busy:
             self.close()
         elif not self._process.is_broken:
             self._process.call("forget", car)
@@ -288,11 +305,17 @@ class RemoteRoad(_Remote):
                 self._started_s = part_s
             assert part_s == self._started_s, "another advance was started"
             self._started_s = None
-            passed, entered = self._process.receive()
+            passed, entered, self.time_s = self._process.receive()
             for car, each in passed.items():
-                self._cars[car].see(unpack_advance(each))
+                if (traffic := self._cars.get(car)) is not None:
+                    traffic.see(unpack_advance(each))
             if self._original is None:
                 self._entered += [self.take(car, state) for car, state in entered.items()]
+
+    def reach(self, time_s: float) -> None:
+        """Lets the traffic run to a simulation time, unless it has."""
+        if (left_s := time_s - self.time_s) > self.step_s / 2:
+            self.run(left_s)
 
     def _to_hear(self) -> list[tuple[float, str, RoadRequest]]:
         """What the other cars of the original have asked for and this copy has not heard."""
@@ -301,11 +324,11 @@ class RemoteRoad(_Remote):
     def _parts(self, duration_s: float) -> Iterator[float]:
         """The duration, in parts between which the requests of the original's other cars are made."""
         original = self._original
-        if original is None or not self._to_hear():
+        if original is None or self._started_s is not None or not self._to_hear():
             yield duration_s
             return
         steps = round(duration_s / self.step_s)
-        now_s = self._cars[original.car].ahead_s
+        now_s = self.time_s
         for time_s, car, request in self._to_hear():
             before = round((time_s - now_s) / self.step_s)
             if before >= steps:
@@ -347,11 +370,6 @@ class RemoteTraffic(_Remote):
         """The newest state."""
         return self._state
 
-    @property
-    def ahead_s(self) -> float:
-        """Simulation time up to which the road has run for it."""
-        return self._ahead[-1][0].time_s if self._ahead else self._state.time_s
-
     def start(self, duration_s: float) -> None:
         if not self._ahead:
             self.road.start(duration_s)
@@ -383,7 +401,9 @@ class RemoteTraffic(_Remote):
             RuntimeError: the road has run further for another car; drive on as far before asking.
         """
         if self._ahead:
-            raise RuntimeError(f"car {self.car!r} cannot ask in the past; the road has run to {self.ahead_s:g} s")
+            raise RuntimeError(
+                f"car {self.car!r} cannot ask in the past; the road has run to {self.road.time_s:g} s"
+            )
         answer = self.road.ask(self.car, self._state, request)
         kept = not answer.accepted or answer.reason == KEEPS_ROUTE
         self.is_steered = self.is_steered or not (isinstance(request, Reroute) and kept)
@@ -408,6 +428,7 @@ class RemoteTraffic(_Remote):
         in it what they do beside the original, as far as that has driven; then they go on by themselves."""
         source = self.road.source
         road = RemoteRoad(source, source.branched(self._process), self if self.road.is_shared else None)
+        road.time_s = self.road.time_s
         twin = road.take(self.car, pack_state(self._state))
         twin._ahead.extend(self._ahead)
         return twin
@@ -454,14 +475,21 @@ class _Source:
 
     def departed(self, plan: EgoPlan) -> RemoteTraffic:
         """A drive in a process of its own."""
-        with self._lock:
-            process = self._copied()
+        process = self.copied()
         try:
             state = process.call("depart", plan)
         except BaseException:
             process.close()
             raise
-        return RemoteRoad(self, process).take(EGO, state)
+        road = RemoteRoad(self, process)
+        traffic = road.take(EGO, state)
+        road.time_s = traffic.state.time_s
+        return traffic
+
+    def copied(self) -> RemoteProcess:
+        """A process that continues from where the warm one is."""
+        with self._lock:
+            return self._copied()
 
     def without_ego(self) -> RemoteCopy:
         """A copy without an ego."""

@@ -156,11 +156,14 @@ class Server:
         """Uses a cockpit no longer."""
         self._convoy.forget(car)
 
-    def do_advance(self, duration_s: float, cars: tuple[str, ...]) -> tuple[dict[str, Packed], dict[str, Packed]]:
-        """Lets the traffic run; returns what passed for each of those cars, and the state of each that entered."""
+    def do_advance(
+        self, duration_s: float, cars: tuple[str, ...]
+    ) -> tuple[dict[str, Packed], dict[str, Packed], float]:
+        """Lets the traffic run; returns what passed for each of those cars, the state of each that entered, and the
+        simulation time."""
         passed, entered = self._convoy.advance(duration_s, cars, self._running.after_step)
         first = {car: pack_state(self._convoy.drive(car).state) for car in entered}
-        return {car: pack_advance(each) for car, each in passed.items()}, first
+        return {car: pack_advance(each) for car, each in passed.items()}, first, self._running.sumo.time()
 
     def do_request(self, request: RoadRequest, car: str) -> Answer:
         """Makes a request to the driver or the car."""

@@ -288,6 +288,12 @@ class World:
         road = self.roads[car] = EgoRoad(self, sumo, car, sensor, pedals)
         return EgoDrive(road, Driver(plan, pedals, self.step_s, own), road.now, take=pedals.take)
 
+    def set_out(self) -> list[str]:
+        """The cars without a cockpit that have set out in the last step, on roads that the network has for cars."""
+        sumo, edges = self._sumo, self.network.edges
+        cars = (each for each in sumo.departed() if sumo.vehicle_class(each) == "passenger")
+        return [car for car in cars if car not in self.roads and sumo.edge_of(car) in edges]
+
     def forget(self, car: str) -> None:
         """The cockpit of a car is no longer used; the car drives on."""
         self.roads.pop(car, None)

@@ -3,10 +3,12 @@
 import warnings
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
 from automotive_cosim.envs.drive import DriveEnv, DrivesEnv
+from automotive_cosim.envs.flat_drive import ACTIONS
 from automotive_cosim.errors import ActionError, UserError
 from automotive_cosim.traffic.fork import Simulations
 
@@ -71,6 +73,37 @@ def test_pettingzoo_has_nothing_to_say() -> None:
         parallel_api_test(make(), num_cycles=40)
         parallel_seed_test(make, num_cycles=10)
     assert isinstance(pettingzoo.make("parallel", "AutomotiveCosim/Fleet-v0", cars=1), FleetEnv)
+
+
+def test_the_same_seed_is_the_same_fleet(simulations: Simulations) -> None:
+    """PettingZoo's own test of seeds ends with the first step, whatever it is told."""
+    told = []
+    for _ in range(2):
+        fleet = FleetEnv(3, flat=True, lean=True, minutes=0.3, simulations=simulations)
+        draws, seen = np.random.default_rng(1), [fleet.reset(seed=7)]
+        while fleet.agents:
+            seen.append(fleet.step({car: draws.integers(len(ACTIONS)) for car in fleet.agents}))  # type: ignore[arg-type]
+        told.append(seen)
+        fleet.close()
+    np.testing.assert_equal(*told)
+    assert {car for step in told[0][1:] for car in step[0]} == {"car_0", "car_1", "car_2"}
+
+
+def test_one_policy_sees_all_cars_in_a_vector(simulations: Simulations) -> None:
+    envs = gym.make_vec("AutomotiveCosim/Fleet-v0", 3, minutes=0.2, lean=True, simulations=simulations)
+    seen, _ = envs.reset(seed=4)
+    assert envs.observation_space.contains(seen)
+    ended = np.zeros(3, int)
+    while not ended.all():
+        before = seen
+        seen, rewards, terminated, truncated, info = envs.step(np.ones(3, np.int64))
+        assert envs.observation_space.contains(seen)
+        assert not rewards[~info["acted"]].any()
+        assert (before[~info["acted"]] == 0).all()
+        ended += terminated | truncated
+    assert ended.tolist() == [1, 1, 1]
+    assert not (info["final_obs"] == seen).all()
+    envs.close()
 
 
 def test_what_is_no_fleet_is_refused() -> None:
