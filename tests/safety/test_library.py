@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.drive import DriveSetup
@@ -15,8 +13,6 @@ from automotive_cosim.run.trial import Limits
 from automotive_cosim.safety.space import LIBRARY, FactorChoices, FactorRange, read_space, space_file
 from automotive_cosim.safety.trying import trial_of
 from tests.laws import over
-
-ROAD_WORDS = "cuts in", "cuts out", "the vehicle ahead brakes", "still stands after roadworks"
 
 
 def test_there_are_thirty() -> None:
@@ -28,7 +24,6 @@ def test_every_space_can_be_searched(name: str) -> None:
     space = read_space(space_file(name))
     assert space.about.endswith(".")
     assert space.sources
-    assert space.occurs in KINDS or space.occurs in ROAD_WORDS
     assert space.rule.events
     assert set(space.rule.events) <= KINDS.keys()
     assert any(
@@ -63,21 +58,3 @@ def test_the_guides_first_search_is_of_events_that_its_staging_makes_due() -> No
     file = Path(automotive_cosim.safety.__file__).parent / "spaces" / f"{name}.toml"
     space = tomllib.loads(file.read_text("utf-8"))
     assert space["factors"]["stage"] in space["failure"]["events"]
-
-
-def test_a_space_in_which_little_is_due_says_so_before_it_starts(tmp_path: Path) -> None:
-    options = (
-        "--space",
-        "cut-in",
-        "--agent",
-        "silent",
-        "--budget",
-        "4",
-        "--out",
-        str(tmp_path / "cut"),
-        "--dry-run",
-    )
-    told = CliRunner().invoke(app, ["search", *options])
-    assert told.exit_code == 0, told.output
-    assert "In most points nothing is due here" in told.output.splitlines()[0]
-    assert "begin with roadworks" in told.output
