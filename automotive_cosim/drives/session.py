@@ -237,6 +237,8 @@ class DriveSession(JudgedSession):
         for moment in moments:
             self.moments.append(moment)
             self._note(moment)
+        if not self.judged:  # nobody looks back further
+            del self.moments[1 : -max(READ_BACK, IN_FORCE_S)]
         self._follow()
 
     def _note(self, moment: Moment) -> None:

@@ -144,6 +144,8 @@ class FleetEnv(ParallelEnv):
         told |= dict(map(self._entered, self._road.entered()))
         self._seen = {car: each[0] for car, each in told.items()}
         self.agents = [car for car in self.possible_agents if car in told and not (told[car][2] or told[car][3])]
+        for car in told.keys() - set(self.agents) if self.agents else ():
+            self._road.leave(self._drive_of(car).car)
         return cast(Parts, tuple({car: each[part] for car, each in told.items()} for part in range(5)))
 
     def render(self) -> npt.NDArray[np.uint8] | None:
@@ -161,9 +163,12 @@ class FleetEnv(ParallelEnv):
 
     @property
     def _road(self) -> RemoteRoad:
-        first = self.envs[self.possible_agents[0]].episode.world.traffic.wrapped
-        assert isinstance(first, RemoteTraffic)
-        return first.road
+        return self._drive_of(self.possible_agents[0]).road
+
+    def _drive_of(self, car: str) -> RemoteTraffic:
+        traffic = self.envs[car].episode.world.traffic.wrapped
+        assert isinstance(traffic, RemoteTraffic)
+        return traffic
 
     def _now_s(self, car: str) -> float:
         return self.envs[car].episode.world.moment.time_s

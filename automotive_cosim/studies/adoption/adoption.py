@@ -16,7 +16,7 @@ from statistics import fmean
 
 import numpy as np
 
-from automotive_cosim.agents import Agent, AgentSettings, make_agent
+from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import ActionType, Reroute
 from automotive_cosim.cosim.simulation import couple
@@ -212,6 +212,7 @@ class _Drive:
         self._job, self._plan, self._scenario, self._road = job, job.plan, scenario, road
         self._policy = job.plan.policy
         self._said = _Said()
+        self._model = model_of(*named(self._policy.agent))
 
     def go(self, share: float) -> _Said:
         """Drives for the plan's time; what the assistants did."""
@@ -255,7 +256,8 @@ class _Drive:
 
     def _agent(self, car: RemoteTraffic) -> Passing[None]:
         """Lets an agent act in the cockpit of a car until the drive ends or the agent fails."""
-        agent = make_agent(*named(self._policy.agent), AgentSettings(seed=self._job.seed))
+        settings = AgentSettings(seed=self._job.seed)
+        agent = make_agent(*named(self._policy.agent), settings, self._model)
         session = self._session(car, agent)
         agent.reset(session.goal)
         before = car.state.ahead.route_edges
