@@ -26,7 +26,7 @@ from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.session import Baseline, JudgedSession, Passing, beginning
+from automotive_cosim.episode.session import Baseline, JudgedSession, TakesTime, beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.interface.observe import Channel
 
@@ -144,11 +144,11 @@ class DriveSession(JudgedSession):
         """The harm on this drive, and on the do-nothing drive of the same length."""
         return harm(self.moments), harm(self.baseline_moments)
 
-    def thinking(self, seconds: float) -> Passing[None]:
+    def thinking(self, seconds: float) -> TakesTime[None]:
         """As in a session, at most to the end of the drive."""
         return super().thinking(min(seconds, max(0.0, self._left_s())))
 
-    def stepping(self, action: Action) -> Passing[None]:
+    def stepping(self, action: Action) -> TakesTime[None]:
         """As in a session; a spoken answer is noted, and a declared status ends nothing."""
         said = spoken(action, self.world.moment.time_s)
         if said is not None:
@@ -169,7 +169,7 @@ class DriveSession(JudgedSession):
     def _copies(self) -> Sequence[Baseline]:
         return (self.baseline, *(twin.copy for twin in self.twins)) if self.judged else ()
 
-    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Passing[Feedback]:
+    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> TakesTime[Feedback]:
         """Lets an action's time pass: a wait lasts until something wakes."""
         if why := self._note_acts():
             feedback = self.world.cockpit.spoken(Feedback(FeedbackCode.REFUSED, why))
@@ -204,7 +204,7 @@ class DriveSession(JudgedSession):
 
     def _proceed(
         self, action: Action | None, feedback: Feedback, cost_s: float = 0.0, said: tuple[str, ...] = ()
-    ) -> Passing[None]:
+    ) -> TakesTime[None]:
         yield from super()._proceed(action, feedback, cost_s, said)
         self._read()
 
@@ -292,7 +292,7 @@ class DriveSession(JudgedSession):
             end = End.MINUTES_OVER if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
         return End.MINUTES_OVER if end is End.OUT_OF_TIME else end
 
-    def _finish(self, end: End) -> Passing[None]:
+    def _finish(self, end: End) -> TakesTime[None]:
         """An agent that stops acting leaves the rest of the drive to itself."""
         if end not in (End.DRIVE_ENDED, End.MINUTES_OVER) and self.setup.max_sim_s is not None:
             self.unwatched_from_s = round(self.seconds, 1)

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action
 from automotive_cosim.envs.pool import POOL
-from automotive_cosim.episode.session import Passing, Session, driven
+from automotive_cosim.episode.session import Session, TakesTime, driven
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.interface import spaces
@@ -74,7 +74,7 @@ class SessionEnv(gym.Env[ObsT, ActT], Generic[ObsT, ActT, PlayedT]):
         return driven(self.stepping(action))
 
     @abstractmethod
-    def stepping(self, action: ActT) -> Passing[Stepped[ObsT]]:
+    def stepping(self, action: ActT) -> TakesTime[Stepped[ObsT]]:
         """As ``step``, tick by tick (``Session.stepping``)."""
 
     def render(self) -> npt.NDArray[np.uint8] | None:

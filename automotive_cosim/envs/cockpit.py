@@ -12,7 +12,7 @@ from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended,
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.session import Passing
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import ACTION_COST_S, EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import UserError
@@ -117,7 +117,7 @@ class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
         self._episode = Episode.take_over(hand_over, self._setup, self._observer)
         return self._encoded(), self._info()
 
-    def stepping(self, action: Action | Mapping[str, Any] | str) -> Passing[StepResult]:
+    def stepping(self, action: Action | Mapping[str, Any] | str) -> TakesTime[StepResult]:
         episode = self._running()
         yield from episode.stepping(action_of(action))
         return self._encoded(), *outcome(episode), self._info()

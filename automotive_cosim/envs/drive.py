@@ -17,7 +17,7 @@ from automotive_cosim.drives.specification import MOST_STEPS, DriveSpec
 from automotive_cosim.envs.base import ActT, ObsT, SessionEnv, StepResult, action_of, ended, info_of, spaces_of
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.session import Passing
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.formats.checked import Steps, checked
 from automotive_cosim.formats.toml import dotted
@@ -144,7 +144,7 @@ class DriveEnv(DrivesEnv[dict[str, Any], Any]):
     def _departed(self) -> tuple[dict[str, Any], dict[str, Any]]:
         return self._encoded(), info_of(self.episode)
 
-    def stepping(self, action: Action | Mapping[str, Any] | str) -> Passing[StepResult]:
+    def stepping(self, action: Action | Mapping[str, Any] | str) -> TakesTime[StepResult]:
         session = self._running()
         yield from session.stepping(action_of(action))
         info, reward = info_of(session), 0.0

@@ -31,7 +31,7 @@ from automotive_cosim.envs.base import SessionEnv, Stepped
 from automotive_cosim.envs.cockpit import outcome, traffic_seed
 from automotive_cosim.envs.numbers import hashed, number_of
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.session import Passing
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import UserError
@@ -144,7 +144,7 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
         self._held = self._holds()
         return self._numbers(), {"action_mask": self.action_masks()}
 
-    def stepping(self, action: np.int64) -> Passing[Stepped[npt.NDArray[np.float32]]]:
+    def stepping(self, action: np.int64) -> TakesTime[Stepped[npt.NDArray[np.float32]]]:
         """Performs one action of the table; ``info`` holds ``action_mask`` and, at the end, ``is_success``."""
         episode = self._running()
         yield from episode.stepping(self._action(number_of(action, self._count)))

@@ -41,7 +41,7 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.envs.base import Stepped, ended
 from automotive_cosim.envs.drive import DrivesEnv, settings_of
 from automotive_cosim.envs.numbers import hashed, number_of
-from automotive_cosim.episode.session import Passing
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.traffic.fork import Simulations
@@ -407,7 +407,7 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
             return ACTIONS.index(Action(ActionType.SHOW_ALERT, kind=action.kind))
         return None
 
-    def stepping(self, action: np.int64) -> Passing[Stepped[npt.NDArray[np.float32]]]:
+    def stepping(self, action: np.int64) -> TakesTime[Stepped[npt.NDArray[np.float32]]]:
         """Performs one action of the table, and lets its time pass."""
         session = self._running()
         chosen = ACTIONS[number_of(action, len(ACTIONS))]

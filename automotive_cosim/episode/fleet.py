@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from automotive_cosim.episode.session import Passing
+from automotive_cosim.episode.session import TakesTime
 
 R = TypeVar("R")
 
@@ -19,7 +19,7 @@ R = TypeVar("R")
 class _Act(Generic[R]):
     """What a car is doing."""
 
-    passing: Passing[R]
+    passing: TakesTime[R]
     now_s: Callable[[], float]
     wakes_s: float = 0.0
     """Simulation time at which it goes on."""
@@ -39,7 +39,7 @@ class Fleet(Generic[R]):
         """The cars that are doing something."""
         return frozenset(self._acts)
 
-    def begin(self, car: str, passing: Passing[R], now_s: Callable[[], float]) -> None:
+    def begin(self, car: str, passing: TakesTime[R], now_s: Callable[[], float]) -> None:
         """Lets a car do something; what it does at this instant is done at once.
 
         Args:

@@ -48,11 +48,11 @@ from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
 
 R = TypeVar("R")
-Passing: TypeAlias = Generator[float, None, R]
+TakesTime: TypeAlias = Generator[float, None, R]
 """Something that takes simulated time: yields each tick in seconds, and goes on once the road may run that far."""
 
 
-def driven(passing: Passing[R]) -> R:
+def driven(passing: TakesTime[R]) -> R:
     """Lets it happen on a road of its own; its result."""
     while True:
         try:
@@ -138,14 +138,14 @@ class Session:
         """
         driven(self.stepping(action))
 
-    def thinking(self, seconds: float) -> Passing[None]:
+    def thinking(self, seconds: float) -> TakesTime[None]:
         """As ``think``, tick by tick."""
         self._check_open()
         if seconds > 0:
             yield from self._advance(seconds)
             self.thought_s += seconds
 
-    def stepping(self, action: Action) -> Passing[None]:
+    def stepping(self, action: Action) -> TakesTime[None]:
         """As ``step``, tick by tick. What is done at an instant is done when it yields the tick that passes next,
         so several sessions can share a road (``episode.fleet``)."""
         self._check_open()
@@ -165,7 +165,7 @@ class Session:
         """Spends a step on an answer that could not be read as an action: only its time passes."""
         driven(self.refusing(why))
 
-    def refusing(self, why: str) -> Passing[None]:
+    def refusing(self, why: str) -> TakesTime[None]:
         """As ``refuse``, tick by tick."""
         self._check_open()
         yield from self._proceed(None, Feedback(FeedbackCode.MALFORMED, why))
@@ -282,7 +282,7 @@ class Session:
 
     def _proceed(
         self, action: Action | None, feedback: Feedback, cost_s: float = 0.0, said: tuple[str, ...] = ()
-    ) -> Passing[None]:
+    ) -> TakesTime[None]:
         """Lets the action's time pass, plus ``cost_s``; the driver says ``said`` and what he has to say besides."""
         feedback = yield from self._spend(action, feedback, cost_s)
         said += self._remarks()
@@ -307,7 +307,7 @@ class Session:
         if end is not None:
             yield from self._finish(end)
 
-    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Passing[Feedback]:
+    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> TakesTime[Feedback]:
         """Lets an action's time pass, and returns what the agent is told of its result."""
         waited_s = action.seconds if action and action.action_type is ActionType.WAIT else None
         yield from self._advance(self.setup.action_cost_s * (waited_s or 1) + cost_s)
@@ -317,7 +317,7 @@ class Session:
         """The channels of the observation after an action."""
         return self.setup.given
 
-    def _advance(self, duration_s: float) -> Passing[None]:
+    def _advance(self, duration_s: float) -> TakesTime[None]:
         """Advances tick by tick."""
         left_s = duration_s
         while left_s > ROUNDING_S and self.world.moment.driving.end is None:
@@ -340,7 +340,7 @@ class Session:
         most_s = self.setup.max_sim_s
         return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
 
-    def _finish(self, end: End) -> Passing[None]:
+    def _finish(self, end: End) -> TakesTime[None]:
         self.end = end
         yield from ()
 
@@ -561,7 +561,7 @@ class JudgedSession(Session, ABC):
                 copy.part()
         return super()._performed(action)
 
-    def _advance(self, duration_s: float) -> Passing[None]:
+    def _advance(self, duration_s: float) -> TakesTime[None]:
         """Advances second by second together with the copies: all simulations run at the same time."""
         left_s = duration_s
         while left_s > ROUNDING_S and self.world.moment.driving.end is None:

@@ -22,7 +22,7 @@ from automotive_cosim.contracts import ActionType, Reroute
 from automotive_cosim.cosim.simulation import couple
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.fleet import Fleet
-from automotive_cosim.episode.session import Passing
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.specification import SCREEN, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UserError
 from automotive_cosim.run.batch import BatchKind
@@ -230,13 +230,13 @@ class _Drive:
                         road.leave(name)
         return self._said
 
-    def _clock(self) -> Passing[None]:
+    def _clock(self) -> TakesTime[None]:
         """A second of the road, whoever drives in it."""
         until_s = self._road.time_s + 1.0
         yield 1.0
         self._road.reach(until_s)
 
-    def _rule(self, car: RemoteTraffic) -> Passing[None]:
+    def _rule(self, car: RemoteTraffic) -> TakesTime[None]:
         """Advises by the news, every so often; the driver follows as his profile does."""
         rng = np.random.default_rng((self._job.seed, *car.car.encode()))
         follows = profile(self._plan.driver).compliance
@@ -254,7 +254,7 @@ class _Drive:
             if self._policy.leaves(stay[0].eta_s, stay[0].delay_s, quickest.eta_s) and rng.random() < follows:
                 self._said.reroutes += car.request(Reroute(edges=quickest.edges)).accepted
 
-    def _agent(self, car: RemoteTraffic) -> Passing[None]:
+    def _agent(self, car: RemoteTraffic) -> TakesTime[None]:
         """Lets an agent act in the cockpit of a car until the drive ends or the agent fails."""
         settings = AgentSettings(seed=self._job.seed)
         agent = make_agent(*named(self._policy.agent), settings, self._model)
