@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import gymnasium as gym
 import numpy as np
@@ -30,10 +30,13 @@ from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.traffic.fork import RemoteRoad, RemoteTraffic
 from automotive_cosim.traffic.sumo import EGO
 
-try:
+if TYPE_CHECKING:
     from pettingzoo import ParallelEnv, register
-except ImportError:  # the vector environment needs none of it
-    ParallelEnv, register = object, None
+else:
+    try:
+        from pettingzoo import ParallelEnv, register
+    except ImportError:  # the vector environment needs none of it
+        ParallelEnv, register = object, None
 
 Parts = tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]
 
