@@ -17,7 +17,8 @@ from automotive_cosim.episode.specification import End, EpisodeSpec
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.geo.breaches import Violation
-from automotive_cosim.measures import exposure, following_figures
+from automotive_cosim.measures.exposure import exposure
+from automotive_cosim.measures.following import following_figures
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.estimates import PositionEstimate, estimates
 from automotive_cosim.run.figures import (

@@ -143,7 +143,7 @@ def _chatter(**named: object) -> object:
 
 def test_json_stands_alone_whatever_else_prints(cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """``main`` runs all commands alike."""
-    monkeypatch.setattr("automotive_cosim.cli.main.app", _chatter)
+    monkeypatch.setattr("automotive_cosim.cli.main.made", lambda asked: _chatter)
     asked = cli("agents", "list", "--json")
     assert json.loads(asked.out)["agents"]
     assert asked.err.count("CHATTER") == 3
@@ -215,7 +215,7 @@ def test_no_command_ends_with_a_traceback_whatever_its_output_and_names(tmp_path
 
 
 def test_what_loads_is_told_before_anything_is_imported(tmp_path: Path) -> None:
-    (tmp_path / "gymnasium.py").write_text("raise SystemExit(9)\n", encoding="utf-8")
+    (tmp_path / "typer.py").write_text("raise SystemExit(9)\n", encoding="utf-8")
     for words, told in (
         (["run"], "loading tasks and agents\n"),
         (["--debug", "scenarios", "import", "x.osm"], "loading the importer\n"),
