@@ -34,7 +34,6 @@ CLOSED_PIPE = 141
 
 COMMANDS = (
     ("run", "run:run", RUN),
-    ("drive", "drive:drive", RUN),
     ("eval", "evaluate:evaluate", RUN),
     ("search", "search:search", RUN),
     ("serve", "serve:serve", READ),
@@ -68,6 +67,7 @@ def made(asked: str = "") -> typer.Typer:
         name="automotive-cosim",
         help="Agents that operate the cockpit of a car in live SUMO traffic.",
         no_args_is_help=True,
+        add_completion=False,
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )

@@ -28,7 +28,6 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
     the car finds no gap, the drive begins with the next of its trips.
 
     Args:
-        script: the drive.
         simulations: warm traffic, shared with others.
         observer: notified of progress.
 

@@ -76,7 +76,6 @@ class World:
         """Loads the scenario.
 
         Args:
-            setup: what to load.
             scratch: an empty folder, which is not needed afterwards.
 
         Raises:

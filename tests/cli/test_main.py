@@ -92,7 +92,7 @@ OTHERS = {
     ("scenarios", "download"), ("publish", "bundle"), ("publish", "leaderboard"),
     ("export",), ("keep",),
 }  # fmt: skip
-"""Commands whose result is a file, or a process that serves."""
+"""Commands whose result is a file, a server, or traffic that is kept."""
 
 
 @pytest.mark.parametrize("command", list(every_command()), ids=" ".join)

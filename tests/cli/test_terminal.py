@@ -221,7 +221,7 @@ def test_what_loads_is_told_before_anything_is_imported(tmp_path: Path) -> None:
         (["--debug", "scenarios", "import", "x.osm"], "loading the importer\n"),
         (["scenarios", "list"], ""),
         (["run", "--help"], ""),
-        (["drive", "run"], "loading drives and agents\n"),
+        (["compare", "run"], "loading results\n"),
     ):
         code = "from automotive_cosim_main import main; main()"
         done = subprocess.run([sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, text=True)
