@@ -29,10 +29,15 @@ WARM = 2
 
 
 @contextmanager
-def trials(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[TrialSetup, TrialRow]]:
-    """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share."""
-    with closing(Simulations(count_limit=WARM)) as simulations, closing(ForkServer()) as fork_server:
-        yield lambda job, folder: run_job(job, folder, pictures, simulations, fork_server, meter)
+def trials(
+    pictures: Pictures, meter: MeterHandle | None = None, simulations: Simulations | None = None
+) -> Iterator[Runner[TrialSetup, TrialRow]]:
+    """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share, and warm simulations are its
+    own unless given."""
+    with ExitStack() as ends:
+        fork_server = ends.enter_context(closing(ForkServer()))
+        warm = simulations or ends.enter_context(closing(Simulations(count_limit=WARM)))
+        yield lambda job, folder: run_job(job, folder, pictures, warm, fork_server, meter)
 
 
 def run_job(
