@@ -150,6 +150,26 @@ class CongestionSettings(DrivenSettings):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AdoptionSettings(DrivenSettings):
+    """What a study of an assistant's adoption sets."""
+
+    kind: ClassVar[str] = "adoption"
+    sets: ClassVar[tuple[str, ...]] = ("shares", "seeds")
+
+    agent: Annotated[str, MinLen(1)] = "worthwhile:1.2:60"
+    """The assistant: a rule for routes (never, always, delay:SECONDS, worthwhile:FACTOR:SECONDS), or an agent of
+    drives, as in rule-perfect, NAME/MODEL or package.module:Class."""
+    shares: Annotated[tuple[Annotated[float, Ge(0), Le(100)], ...], MinLen(1)] = (0.0, 5.0, 10.0, 25.0, 50.0, 100.0)
+    """Per cent of the cars that have it; a greater share has the cars of every smaller one; 0 is always run."""
+    driver: str = "average"
+    """Driver profile by which drivers react to the assistant; otherwise they drive as they would."""
+    minutes: Annotated[float, Ge(1), Le(1_440)] = 60.0
+    """How long after the warm-up the traffic is followed."""
+    every_s: Annotated[float, Ge(10), Le(3_600)] = 60.0
+    """Seconds between two looks of a rule at the news."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DaysSettings(TrafficSettings):
     """What a study of advice from day to day sets."""
 

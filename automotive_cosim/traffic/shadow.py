@@ -55,6 +55,11 @@ class SharedTraffic:
         self._shadows: WeakSet[Shadow] = WeakSet()
 
     @property
+    def wrapped(self) -> Traffic:
+        """The drive that it took over."""
+        return self._traffic
+
+    @property
     def network(self) -> RoadNetwork:
         return self._traffic.network
 

@@ -176,7 +176,7 @@ TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
     (r"eval .*--executor ray", NOT_RUN, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario (resco|shipped,)", NOT_RUN, "needs networks of others"),
-    (r"study (congestion|days|compare)", NOT_RUN, "takes minutes; tests/studies run them"),
+    (r"study (adoption|congestion|days|compare)", NOT_RUN, "takes minutes; tests/studies run them"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
     (r"run .*(--model '?replay/|--agent (my_agent:|caller --interface functions --see))", LAST, ""),
     (r"run --agent my_agents:", (*GRID, *LAST), "takes ten seconds in its own scenario"),

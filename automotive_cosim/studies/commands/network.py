@@ -1,4 +1,4 @@
-"""``automotive-cosim study congestion`` and ``days``: studies of a whole network."""
+"""``automotive-cosim study congestion``, ``days`` and ``adoption``: studies of a whole network."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.studies.commands.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
-from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, TrafficSettings
+from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, TrafficSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.run.batch import BatchKind
@@ -64,6 +64,27 @@ def days(
     tell_reading(plan.scenario)
     plan.check()
     _run(plan, DAYS, DaysStudy, shown, "shares and seeds", out, settings, as_json=as_json)
+
+
+@takes(AdoptionSettings, but=("emissions",))
+@takes(ExecutorSettings)
+def adoption(
+    out: StudyFolder = None,
+    as_json: AsJson = False,
+    **settings: Any,
+) -> None:
+    """Put an assistant into a growing share of the cars of one traffic: what it does to them and to all others.
+
+    Rerun the command to resume a stopped study.
+    """
+    from automotive_cosim.studies.adoption.adoption import ADOPTION, AdoptionPlan, AdoptionStudy
+    from automotive_cosim.studies.adoption.page import shown
+
+    plan = filled(AdoptionPlan, settings)
+    tell_reading(plan.scenario)
+    plan.check()
+    tell_notes([plan.opened])
+    _run(plan, ADOPTION, AdoptionStudy, shown, "seeds", out, settings, as_json=as_json)
 
 
 def _run(
