@@ -34,7 +34,6 @@ def depart(
     the car finds no gap, the drive begins with the next of its trips.
 
     Args:
-        script: the drive.
         simulations: warm traffic, shared with others.
         observer: notified of progress.
         traffic: a drive by the script that has departed; None lets one depart.

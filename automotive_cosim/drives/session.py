@@ -109,7 +109,6 @@ class DriveSession(JudgedSession):
         """The session that begins at the present moment of a drive, and takes it over.
 
         Args:
-            world: the running drive.
             setup: the agent's input, and the duration as ``max_sim_s``.
             observer: notified of every second that passes.
             judged: whether it is judged at its end.

@@ -94,7 +94,6 @@ class SessionEnv(gym.Env[ObsT, ActT], Generic[ObsT, ActT, PlayedT]):
         return self.episode
 
     def _end(self) -> None:
-        """Ends the session, if there is one."""
         episode, self._episode = self._episode, None
         if episode is not None:
             episode.close()

@@ -60,7 +60,6 @@ class Episode(JudgedSession):
         """Drives to the hand-over, and begins there.
 
         Args:
-            spec: what to run.
             simulations: warm traffic, shared with others.
             channels: what the agent wants to see, asked for at the hand-over.
             observer: notified of progress.

@@ -79,7 +79,6 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
 
     Args:
         scenario: a name or a folder.
-        steps: SUMO steps to measure.
         say: called with what is being measured.
 
     Raises:

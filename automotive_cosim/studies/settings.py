@@ -93,8 +93,6 @@ class RerouteSettings(DrivenSettings):
     """Shares of the other cars that reroute, 0 to 1; each is warmed up separately."""
     ages_s: Annotated[tuple[Annotated[float, Ge(0), Le(OLDEST_NEWS_S)], ...], MinLen(1)] = (0.0,)
     """Ages of the traffic news in seconds, by which the alternative route is selected."""
-    driver: Annotated[str, SCENARIOS_OWN] = ""
-    """Driver profile of the ego."""
     compliance: Annotated[tuple[CarShare, ...], MinLen(1)] = (1.0,)
     """Probabilities that the driver follows the advice, at the same decisions; most tables use only the first."""
     policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
@@ -114,8 +112,6 @@ class RerouteSettings(DrivenSettings):
     """Share of the vehicles present at a decision that must arrive before its futures end."""
     limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
     """Simulated seconds after which a future ends anyway."""
-    equilibrium_gap: float | None = None
-    """Declare that the demand comes from duaIterate with this relative gap."""
     half_width_s: Annotated[Annotated[float, Ge(0.1), Le(3_600)] | None, Option("until")] = None
     """Add seeds until the mean gain is known to within this many seconds."""
     whole_drives: bool = False
@@ -151,8 +147,6 @@ class CongestionSettings(DrivenSettings):
     warm-up."""
     share: Annotated[CarShare | None, SCENARIOS_OWN] = None
     """Share of the cars with SUMO's rerouting device."""
-    corridor: Annotated[str, Option(default="the first")] = ""
-    """Trip along which the time-space diagrams go."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -51,7 +51,6 @@ class EgoDrive:
 
     @property
     def state(self) -> DrivingState:
-        """The newest state."""
         return self._now.state
 
     @property

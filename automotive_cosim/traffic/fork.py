@@ -64,7 +64,6 @@ class Forked:
         """Loads the scenario and warms up its traffic, or copies that of one that has the same.
 
         Args:
-            scenario: the scenario to run.
             seed: seed of SUMO's random numbers.
             progress: called with the progress of the warm-up.
             allow_unprojected: accept a network without projection, with lon and lat None.
@@ -104,8 +103,6 @@ class Forked:
 
         Args:
             call: a module's function, which is sent by its name, of what runs there and the arguments.
-            arguments: its further arguments.
-            named: the same.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
@@ -367,7 +364,6 @@ class RemoteTraffic(_Remote):
 
     @property
     def state(self) -> DrivingState:
-        """The newest state."""
         return self._state
 
     def start(self, duration_s: float) -> None:
@@ -492,7 +488,6 @@ class _Source:
             return self._copied()
 
     def without_ego(self) -> RemoteCopy:
-        """A copy without an ego."""
         with self._lock:
             process = self._copied()
             return RemoteCopy(process, self._outputs_of(self._drives))

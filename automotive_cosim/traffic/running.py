@@ -71,7 +71,6 @@ class Running:
         self.after_step()
 
     def after_step(self) -> None:
-        """Called after every step."""
         for each in self.watchers:
             each.after_step()
         self._beat()

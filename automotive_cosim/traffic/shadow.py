@@ -49,7 +49,6 @@ class SharedTraffic:
 
         Args:
             traffic: the drive, to be used only through this object.
-            step_s: length of its steps.
         """
         self._traffic = traffic
         self.step_s = step_s

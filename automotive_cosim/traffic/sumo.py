@@ -182,7 +182,6 @@ class LibSumo:
             yield lane, speed_mps, wants.get(vehicle, THE_LIMIT)
 
     def has_device(self, vehicle: str, device: str) -> bool:
-        """Whether a vehicle has a device."""
         return bool(self.vehicle.getParameter(vehicle, f"has.{device}.device") == "true")
 
     def reroute(self, vehicle: str) -> None:

@@ -78,7 +78,6 @@ class World:
         """Loads the scenario.
 
         Args:
-            setup: what to load.
             scratch: an empty folder, which is not needed afterwards.
 
         Raises:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 S = TypeVar("S", bound="StudyContent[Any, Any]")
 
 
-@takes(CongestionSettings)
+@takes(CongestionSettings, but=("redraw", "step_s"))
 @takes(ExecutorSettings)
 def congestion(
     out: StudyFolder = None,
@@ -102,13 +102,10 @@ def _run(
     """Runs what is left of a study of a whole network, and prints its result, if anything of it ran.
 
     Args:
-        plan: what to run.
-        kind: kind of batch.
         study_of: reads its folder.
         shown_of: what its report shows; the first table is printed.
         units: what it runs, in words.
         out: its folder; None for the one of its plan.
-        settings: where to run, as the command was given it.
         as_json: print an object alone.
         about: what is said of it before it runs.
 
