@@ -66,7 +66,7 @@ def days(
     _run(plan, DAYS, DaysStudy, shown, "shares and seeds", out, settings, as_json=as_json)
 
 
-@takes(AdoptionSettings, but=("emissions",))
+@takes(AdoptionSettings, but=("emissions", "redraw", "step_s"))
 @takes(ExecutorSettings)
 def adoption(
     out: StudyFolder = None,
