@@ -201,12 +201,12 @@ def _failures(rows: Sequence[TrialRow]) -> Iterator[str]:
         mine = [row for row in rows if row.agent == agent]
         failed = [row for row in mine if row.agent_error is not None]
         for row in failed[:1]:
-            yield f"agent {agent} failed in {counted(len(failed), 'trial')}, e.g. {row.id}: {row.agent_error}"
+            yield f"agent {agent} failed in {counted(len(failed), 'run')}, e.g. {row.id}: {row.agent_error}"
         lost = [row for row in mine if row.malformed]
         steps = sum(row.malformed or 0 for row in lost)
         for row in lost[:1]:
             yield (
-                f"agent {agent} gave no action in {counted(steps, 'step')} of {counted(len(lost), 'trial')}, e.g. "
+                f"agent {agent} gave no action in {counted(steps, 'step')} of {counted(len(lost), 'run')}, e.g. "
                 f"{row.id}: {row.malformed_why}"
             )
 

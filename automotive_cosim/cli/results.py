@@ -74,7 +74,7 @@ TrialId = Annotated[
 
 @reads_results
 def attribute(folder: TrialFolder, episode: TrialId = "", as_json: AsJson = False) -> None:
-    """Measure what each act of a stored trial changed, by leaving it out, and add that to its page.
+    """Measure what each act of a stored run changed, by leaving it out, and add that to its page.
 
     Acts that change nothing alone are also left out in pairs.
     """
@@ -114,7 +114,7 @@ def replay(
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
-    """Replay the actions of a stored trial and compare the traces, or play back its record.
+    """Replay the actions of a stored run and compare the traces, or play back its record.
 
     Exit code 1 if the traces differ. With --play or --film, show what was recorded; nothing runs again.
     """

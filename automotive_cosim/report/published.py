@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-PAPER = (
-    "Automotive-ENV, arXiv 2509.21143, table 3: success rates in per cent, without intervals or numbers of trials"
-)
+PAPER = "Automotive-ENV, arXiv 2509.21143, table 3: success rates in per cent, without intervals or numbers of runs"
 PAPER_COLUMNS = (
     "Base model",
     "Method",

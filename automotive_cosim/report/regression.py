@@ -295,7 +295,7 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
             "Not judged now",
         ),
         tuple(rows),
-        "On the instances that were judged before, in percentage points or points of score, with 95 % intervals "
+        "On the episodes that were judged before, in percentage points or points of score, with 95 % intervals "
         f"over tasks or drives, from {LEAST_CLUSTERS} of them on. Drives are compared by the score of all of them "
         "together, and a drive is lost if "
         f"its score fell. Worse: success or score fell by more than {100 * allowed:g} points, or something is no "
@@ -463,6 +463,6 @@ def junit(found: Sequence[SuccessChange]) -> str:
             if verdict:
                 told = ElementTree.SubElement(entry, verdict, message=case.why or "not solved now")
                 if case.after is not None and case.after.has_run:
-                    told.text = f"trial {case.after.id}: `automotive-cosim serve` with its folder shows each step"
+                    told.text = f"run {case.after.id}: `automotive-cosim serve` with its folder shows each step"
     ElementTree.indent(root)
     return markup(ElementTree.tostring(root, encoding="unicode", xml_declaration=True)) + "\n"

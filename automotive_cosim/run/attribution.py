@@ -200,7 +200,7 @@ def forked(trial: Recorded, simulations: Simulations) -> Iterator[Forks]:
         if wrong := next((step for step in again if step.differs), None):
             raise InfrastructureError(
                 f"step {wrong.number} differs from the record in {', '.join(wrong.differs)}; nothing can be said "
-                "of the acts of a trial that does not repeat"
+                "of the acts of a run that does not repeat"
             )
         yield forks
 
@@ -365,7 +365,7 @@ class Forks(TrialObserver):
         """
         last = self._session.steps[-1].number
         if not steps or not all(0 < step <= last for step in steps):
-            raise UserError(f"there is no step {', '.join(map(str, steps))}; the trial's steps are 1 to {last}")
+            raise UserError(f"there is no step {', '.join(map(str, steps))}; the run's steps are 1 to {last}")
         left = [act for act in self.acts if act.step in steps]
         if not left:
             return ActEffect(tuple(steps), 0.0, "commands nothing")

@@ -168,13 +168,15 @@ def hunt(
     run = _Runner(found, evaluate)
     nominal = run(Phase.NOMINAL, space.nominal).outcome
     if not nominal.held and not nominal.failed:
-        raise UserError(f"the nominal point is not judged ({nominal.error}); give another, the first of each list")
+        raise UserError(
+            f"the nominal combination is not judged ({nominal.error}); give another, the first of each list"
+        )
     stale, at_once = 0, [found.tried[0]] if nominal.failed else []
     for _ in range(MOST_ASKED * budget):
         if found.run >= budget:
             break
         if stale >= MOST_STALE:
-            found.stopped = f"nothing new in {MOST_STALE} points"
+            found.stopped = f"nothing new in {MOST_STALE} combinations"
             break
         point, even = sampler.ask()
         stale = 0 if run.is_new(point) else stale + 1

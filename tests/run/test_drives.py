@@ -99,7 +99,7 @@ def test_tasks_and_drives_are_planned_together_and_apart() -> None:
     assert both == set.union(*apart)
     assert list(map(len, apart)) == [1, 1]
     plans = map(make_plan, (tasks, drives, tasks | drives))
-    assert [unit_of(plan.as_json()) for plan in plans] == ["episode", "drive", "trial"]
+    assert [unit_of(plan.as_json()) for plan in plans] == ["episode", "drive", "run"]
 
 
 def test_a_drive_belongs_to_the_set_of_its_seed() -> None:

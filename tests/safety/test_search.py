@@ -107,7 +107,7 @@ def test_a_search_passes_with_as_many_failures_as_are_allowed() -> None:
     failed = as_json(found)["failed"]
     assert failed > 0
     assert too_many(found, failed) == ""
-    assert too_many(found, failed - 1) == f"{failed} of 64 samples failed, more than {failed - 1}"
+    assert too_many(found, failed - 1) == f"{failed} of 64 combinations failed, more than {failed - 1}"
 
 
 def test_nothing_is_found_where_nothing_fails() -> None:
@@ -159,7 +159,7 @@ def test_a_nominal_point_that_fails_is_a_finding_with_what_passes_beside_it() ->
     assert too_many(found, 64) == "it fails with everything nominal"
     (alone,) = searched(of=lambda point: -1.0).minimal
     assert (alone.neighbour, alone.beside) == (None, "")
-    with pytest.raises(UserError, match="the nominal point is not judged"):
+    with pytest.raises(UserError, match="the nominal combination is not judged"):
         hunt(SPACE, lambda *_: TriedOutcome(None, False, error="SUMO"), RandomSampler(SPACE, 9, default_rng(0)), 9)
 
 
@@ -208,8 +208,8 @@ def test_where_nothing_is_ever_due_nothing_is_known() -> None:
     found = hunt(SPACE, evaluate, Listener(SPACE, 9, default_rng(0)), 9)
     assert min(told) > 1, "further from failing than any pass"
     assert (as_json(found)["samples"], unseen(found).upper) == (0, None)
-    assert sentence(found, "me") == "Nothing was due in all 9 samples, so that nothing is known about me."
-    assert too_many(found, 9) == "nothing was due in any sample, so that nothing is known"
+    assert sentence(found, "me") == "Nothing was due in all 9 combinations, so that nothing is known about me."
+    assert too_many(found, 9) == "nothing was due in any combination, so that nothing is known"
 
 
 def test_an_interrupted_search_keeps_what_it_has() -> None:
@@ -289,10 +289,10 @@ def test_a_space_of_few_points_is_used_up() -> None:
 @pytest.mark.parametrize(
     ("budget", "told"),
     [
-        (SearchBudget(64), "8 of 64 points, about 28 minutes left for the points"),
-        (SearchBudget(64, hours=1 / 3), "8 of 64 points, 10 of 20 minutes, about 10 minutes left at most"),
-        (SearchBudget(hours=2), "8 points, 10 of 120 minutes, about 110 minutes left at most"),
-        (SearchBudget(usd=5), "8 points"),
+        (SearchBudget(64), "8 of 64 combinations, about 28 minutes left for the combinations"),
+        (SearchBudget(64, hours=1 / 3), "8 of 64 combinations, 10 of 20 minutes, about 10 minutes left at most"),
+        (SearchBudget(hours=2), "8 combinations, 10 of 120 minutes, about 110 minutes left at most"),
+        (SearchBudget(usd=5), "8 combinations"),
     ],
 )
 def test_progress_is_told_by_the_limit_that_ends_the_search(budget: SearchBudget, told: str) -> None:

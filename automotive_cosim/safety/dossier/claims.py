@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.judge import EventOutcome
-from automotive_cosim.report.stats import rate, rate_upper_bound
+from automotive_cosim.report.stats import rate, rate_upper_bound, upper_bound
 from automotive_cosim.safety.dossier.domain import NONE, domain
 from automotive_cosim.safety.dossier.subject import (
     NOT_COMPLIANT,
@@ -16,8 +16,12 @@ from automotive_cosim.safety.dossier.subject import (
 )
 from automotive_cosim.safety.findings import percent
 
+MOST_UNSEEN = 0.1
+"""A claim without a failure is supported if no more than this share may fail all the same: from 29 independent
+drives or tasks on."""
 CLAIMS = (
-    "Each claim is about this run. Supported: the run has evidence for it and none against it. Contradicted: "
+    "Each claim is about this run. Supported: the run has evidence for it and none against it, from so many drives "
+    f"or tasks that at most {percent(MOST_UNSEEN)} of such would fail. Contradicted: "
     "it has evidence against it. Limited: it says something, with the bound that is given. Not examined: it says "
     "nothing. " + NOT_COMPLIANT
 )
@@ -57,10 +61,9 @@ def _preventable(subject: Subject) -> Claim:
             if found.interval is None or subject.findings is not None
             else f", {100 * found.interval.low:.0f} to {100 * found.interval.high:.0f} %"
         )
-        status = "supported" if passed == len(subject.episodes) else "contradicted"
-        return Claim(
-            text, status, f"{passed} of {counted(len(subject.episodes), 'episode')} passed{bounds}.", "events"
-        )
+        total, units = len(subject.episodes), len({row.task for row in subject.episodes})
+        status, few = _status(subject, total - passed, units, "task")
+        return Claim(text, status, f"{passed} of {counted(total, 'episode')} passed{bounds}.{few}", "events")
     met = sum(event.outcome.is_credited for event in real)
     void = sum(event.outcome is EventOutcome.VOID for event in events)
     evidence = (
@@ -71,7 +74,21 @@ def _preventable(subject: Subject) -> Claim:
     if careful:
         theirs = sum(event.outcome.is_credited for event in careful)
         evidence += f" The rule-perfect watcher of the same run met {theirs} of {len(careful)}."
-    return Claim(text, "supported" if met == len(real) else "contradicted", evidence, "events")
+    kept = {id(event) for event in real}
+    units = {(row.family, row.seed) for row in subject.drives if any(id(event) in kept for event in row.events)}
+    status, few = _status(subject, len(real) - met, len(units), "drive")
+    return Claim(text, status, evidence + few, "events")
+
+
+def _status(subject: Subject, lost: int, units: int, unit: str) -> tuple[str, str]:
+    """What so many independent units say of a claim, and in words why that is no more, if it is not."""
+    if lost:
+        return "contradicted", ""
+    told = subject.findings["failure_rate_upper"] if subject.findings else upper_bound(0, units)
+    if told is not None and told <= MOST_UNSEEN:
+        return "supported", ""
+    bound = "" if told is None else f": as many as {percent(told)} of such may fail"
+    return "limited", f" {counted(units, unit)} cannot support more{bound}."
 
 
 def _quiet(subject: Subject) -> Claim:
@@ -84,14 +101,14 @@ def _quiet(subject: Subject) -> Claim:
     if subject.findings is None:
         evidence += f", at most {number_told(rate_upper_bound(nuisances, hours))} an hour."
     else:
-        evidence += "; trials of a search give no rates."
+        evidence += "; what a search drew to failures gives no rates."
     section = "unseen" if subject.findings is None else "failures"
     return Claim(text, "contradicted" if nuisances else "limited", evidence, section)
 
 
 def _known_hazards(subject: Subject) -> Claim:
     text = "Known hazardous situations (area 2 of ISO 21448) are few and described by what triggers them."
-    failed = counted(len(subject.failed), "failing trial")
+    failed = counted(len(subject.failed), f"failing {subject.unit}")
     if subject.findings is None:
         status = "not examined" if subject.failed else "limited"
         return Claim(text, status, f"{failed}; no search has found what triggers them.", "failures")
@@ -123,7 +140,7 @@ def _covered(subject: Subject) -> Claim:
     return Claim(
         "The run covers the operational domain.",
         status,
-        f"{total - empty} of {total} values have a trial.",
+        f"{total - empty} of {total} values have a {subject.unit}.",
         "domain",
     )
 
@@ -134,6 +151,6 @@ def _traced(subject: Subject) -> Claim:
     have = "has a hash of its" if total == 1 else "have a hash of their"
     return Claim(
         "The evidence can be checked and repeated.", "supported" if traced == total else "limited",
-        f"{traced} of {counted(total, 'trial')} {have} trace; the files' hashes are listed.",
+        f"{traced} of {counted(total, subject.unit)} {have} trace; the files' hashes are listed.",
         "versions",
     )  # fmt: skip

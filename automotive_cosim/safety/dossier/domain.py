@@ -124,13 +124,14 @@ def domain(subject: Subject) -> Section:
         trials("Departure", [f"{least} to {most} h" for least, most in HOURS], _departure)
         trials("Driver", PROFILES, _driver)
     trials("Language", [each.words for each in Language], lambda row: row.conditions.language.words)
-    table = Table(
-        "domain", "Operational domain", ("Attribute", "Value", "Trials", "Hours", "Kilometres"), tuple(lines),
-        "Values are those that the benchmark knows; a trial counts for every value that it had. What has none is "
-        "not covered by this run.", heads=2,
-    )  # fmt: skip
+    heads = "Attribute", "Value", f"{subject.unit.capitalize()}s", "Hours", "Kilometres"
+    note = (
+        f"Values are those that the benchmark knows; each {subject.unit} counts for every value that it had. What "
+        "has none is not covered by this run."
+    )
+    table = Table("domain", "Operational domain", heads, tuple(lines), note, heads=2)
     empty = sum(line[2] == NONE for line in lines)
-    told = f"{empty} of {counted(len(lines), 'value')} have no trial."
+    told = f"{empty} of {counted(len(lines), 'value')} have no {subject.unit}."
     return Section("domain", "Operational domain covered", (told,), (table,))
 
 
@@ -160,7 +161,9 @@ def exposed(subject: Subject) -> Section:
     ordered = sorted(sums.items(), key=lambda entry: -entry[1][0])
     lines = tuple((*key, f"{hours:.3f}", f"{km:.2f}") for key, (hours, km) in ordered)
     total_km = sum(km for _, km in sums.values())
-    told = f"{subject.hours:.2f} hours and {total_km:.1f} kilometres in {counted(len(subject.judged), 'trial')}."
+    told = (
+        f"{subject.hours:.2f} hours and {total_km:.1f} kilometres in {counted(len(subject.judged), subject.unit)}."
+    )
     return Section(
         "exposure", "Exposure", (told,),
         (Table("exposure", "Exposure", ("Road", "Weather", "Light", "Hours", "Kilometres"), lines, heads=3),),

@@ -26,7 +26,7 @@ DRAWS = 2000
 """Bootstrap samples, at which the second digit of a bound is stable."""
 LEAST_CLUSTERS = 5
 """Fewer trials give no bootstrap interval."""
-NO_RATES = "A search's trials are drawn to failures, so that they are counted and give no rates."
+NO_RATES = "What a search drew to failures is counted and gives no rates."
 
 
 def events(subject: Subject) -> Section:
@@ -98,7 +98,7 @@ def failures(subject: Subject) -> Section:
         heads = "No.", "Fails with", "What is missing", "Beside it", "Replay"
         note = (
             "Each failed three times of three; factors that are not named are nominal. Replay: automotive-cosim "
-            "eval --plan with that file, which also has what is beside it: the nearest point that does not fail."
+            "eval --plan with that file, which also has what is beside it: the nearest that does not fail."
         )
         if cases:
             made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=5))
@@ -111,12 +111,12 @@ def failures(subject: Subject) -> Section:
     if lines:
         more = len(subject.failed) - len(lines)
         note = (
-            "automotive-cosim replay FOLDER TRIAL runs a trial again and says whether every step is the same, bit "
+            "automotive-cosim replay FOLDER ID runs it again and says whether every step is the same, bit "
             "for bit." + (f" {more} more are in the data." if more else "")
         )
-        made.append(Table("failures", "Failing trials", ("Trial", "What is missing"), lines, note, heads=2))
+        made.append(Table("failures", f"Failing {subject.unit}s", ("Id", "What is missing"), lines, note, heads=2))
     else:
-        told.append("No judged trial failed.")
+        told.append(f"No judged {subject.unit} failed.")
     made += [listed for in_space in (True, False) if (listed := _faults(subject, in_space=in_space)).rows]
     return Section("failures", "Failures", tuple(told), tuple(made))
 
@@ -147,7 +147,7 @@ def _faults(subject: Subject, *, in_space: bool) -> Table:
         "When: minutes and seconds since departure at which something was due, or the agent acted. Why: what was "
         "there, from when to when something was due, and what came; of a needless act, what speaks against it of "
         "what could be known, and when it would have been right."
-        + (f" {more} more are in the trials of the data." if more else "")
+        + (f" {more} more are in the data." if more else "")
     )
     heads = "Drive", "When", "What", "Event or act", "Why"
     if in_space:
@@ -191,13 +191,13 @@ def measured(subject: Subject) -> Section:
         if value is not None:
             lines.append((name, "–", f"{value:.2f}", bounds))
     note = (
-        "Worst and median of the trials; then how many of them were critical"
+        f"Worst and median of the {subject.unit}s; then how many of them were critical"
         + (f". {NO_RATES} " if subject.findings else f", with Wilson's interval ({CONFIDENCE_WORDS}). ")
-        + "TET and TIT: per hour driven, with the interval from resampling whole trials. Definitions, with "
-        "sources: docs/reference/failures.md. SUMO's drivers avoid collisions by construction: compare runs with "
-        "each other."
+        + f"TET and TIT: per hour driven, with the interval from resampling whole {subject.unit}s. Definitions, "
+        "with sources: docs/reference/failures.md. SUMO's drivers avoid collisions by construction: compare runs "
+        "with each other."
     )
-    heads = "Measure", "Worst", "Median or rate", "Critical trials, or interval"
+    heads = "Measure", "Worst", "Median or rate", "How many critical, or interval"
     return Section(
         "measures",
         "Surrogate measures",
@@ -212,7 +212,7 @@ def _per_hour(pairs: Sequence[tuple[float, float]]) -> tuple[float | None, str]:
         return None, ""
     value = float(table[:, 0].sum() / table[:, 1].sum())
     if len(table) < LEAST_CLUSTERS:
-        return value, f"too few trials for an interval ({len(table)})"
+        return value, f"too few for an interval ({len(table)})"
     rng = np.random.default_rng(0)
     drawn = table[rng.integers(len(table), size=(DRAWS, len(table)))].sum(axis=1)
     low, high = np.percentile(drawn[:, 0] / drawn[:, 1], [50 * (1 - CONFIDENCE), 50 * (1 + CONFIDENCE)])

@@ -69,6 +69,12 @@ class Subject:
     """Drives of the rule-perfect watcher in the same run."""
 
     @property
+    def unit(self) -> str:
+        """What is counted: ``drive`` or ``episode``, or ``run`` where there are both."""
+        kinds = {type(row) for row in self.rows}
+        return "run" if len(kinds) > 1 else "drive" if DriveTrialRow in kinds else "episode"
+
+    @property
     def others(self) -> list[str]:
         """The other agents of the run, references and controls too."""
         every = (*self.results.rows, *self.results.drives)
@@ -181,7 +187,7 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     ranked = [each for each in labels if each.agent not in NOT_RANKED] or list(labels)
     chosen = [each for each in labels if each.agent == agent] if agent else ranked
     if not chosen:
-        raise UserError(f"{folder} has no trial of agent {agent!r}; give one of {', '.join(_agents(labels))}")
+        raise UserError(f"{folder} has no run of agent {agent!r}; give one of {', '.join(_agents(labels))}")
     if len({each.agent for each in chosen}) > 1:
         raise UserError(f"{folder} has several agents; give --agent with one of {', '.join(_agents(labels))}")
     mine = tuple(row for row in every if contestant(row) in chosen)
@@ -193,7 +199,7 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     models = ", ".join(sorted({each.base_model for each in chosen} - {"none"}))
     made = Subject(results, f"{name}, {models}" if models else name, name, mine, findings, reference)
     if not made.judged:
-        raise UserError(f"{folder} has no judged trial of {name} yet; rerun its command to resume")
+        raise UserError(f"{folder} has no judged run of {name} yet; rerun its command to resume")
     return made
 
 
@@ -217,15 +223,19 @@ def sentence(subject: Subject) -> str:
     """The result in a sentence."""
     failed, judged, empty = len(subject.failed), len(subject.judged), len(subject.nothing_due)
     hours = f"{subject.hours:.2f} h driven"
-    told = f"{failed} of {counted(judged, 'judged trial')} failed ({hours})."
+    if due := judged - empty:
+        these = counted(due, f"judged {subject.unit}") + (" in which something was due" if empty else "")
+        told = f"{subject.agent} failed in {failed} of {these} ({hours})."
+    else:
+        told = f"Nothing was due in {counted(judged, subject.unit)} ({hours}): nothing is known of {subject.agent}."
     if subject.again:
         told += f" {counted(subject.again, 'more run')} repeated and reduced failures, and are in no total."
     if subject.rule is not None and subject.drives:
         told += f" The space counts {subject.rule.words}."
     if beside := len(subject.failed_beside):
         told += f" Of the others, {beside} failed in what the space does not count."
-    if empty:
-        told += f" In {empty} of the trials nothing {'of that ' if subject.rule is not None else ''}was due."
+    if empty and due:
+        told += f" In {empty} more nothing {'of that ' if subject.rule is not None else ''}was due."
     if subject.findings is not None:
         told += (
             f" The search reduced the failures to {counted(len(subject.findings['failures']), 'minimal failure')}"

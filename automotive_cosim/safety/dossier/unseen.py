@@ -44,8 +44,8 @@ def unseen(subject: Subject) -> Section:
     if subject.findings is not None:
         found = subject.findings
         told.append(
-            "Trials of a search are drawn to failures, so that rates of its trials say nothing about the space; "
-            "its bounds are over the points alone that represent the whole space."
+            "What a search drew to failures gives no rates: its bounds are over the combinations alone that "
+            "represent the whole space."
         )
         for name, key in (
             ("Failure rate in the space searched", "failure_rate_upper"),
@@ -88,7 +88,8 @@ def unseen(subject: Subject) -> Section:
         tuple(lines),
         "Units: drives of one family and seed, or episodes of one task, count once, if something was due in "
         "them. Kinds: a place with a kind of "
-        "event, or a task's half in a place. All bounds are for trials drawn as these were, not for the road.",
+        "event, or a task's half in a place. All bounds are for drives and tasks drawn as these were, not for "
+        "the road.",
         heads=3,
     )  # fmt: skip
     return Section("unseen", "What was not seen", tuple(told), (table,))
@@ -130,11 +131,11 @@ def areas(subject: Subject) -> Section:
     lines = (
         (
             "1: known, not hazardous",
-            f"{counted(passed, 'trial')} that passed"
-            + (f"; {counted(empty, 'more trial')} in which nothing was due" if empty else ""),
+            f"{counted(passed, subject.unit)} that passed"
+            + (f"; {counted(empty, f'more {subject.unit}')} in which nothing was due" if empty else ""),
             "Events, Operational domain covered",
         ),
-        ("2: known, hazardous", f"{counted(len(failures), 'trial')} that failed{minimal}", "Failures"),
+        ("2: known, hazardous", f"{counted(len(failures), subject.unit)} that failed{minimal}", "Failures"),
         (
             "3: unknown, hazardous",
             "not known"
@@ -145,12 +146,9 @@ def areas(subject: Subject) -> Section:
         (
             "4: unknown, not hazardous",
             "the rest of the domain",
-            "Operational domain covered: values without a trial",
+            f"Operational domain covered: values without a {subject.unit}",
         ),
     )
-    note = (
-        "Areas of ISO 21448 (SOTIF). Hazardous stands for a failed trial: harm depends on the driver and "
-        "the traffic."
-    )
+    note = "Areas of ISO 21448 (SOTIF). Hazardous stands for a failure: harm depends on the driver and the traffic."
     table = Table("areas", "Areas", ("Area", "In this run", "Section"), lines, note, heads=3)
     return Section("areas", "Known and unknown, hazardous and not", tables=(table,))

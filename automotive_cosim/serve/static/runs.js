@@ -44,7 +44,7 @@ function line(record, records) {
 }
 
 const findings = (id) => `/api/evaluations/${id}/search.html`;
-const searched = (results) => results.is_search ? h("p", {}, "These are the trials of a search. ", h("a", { href: findings(results.id) }, "What it found")) : "";
+const searched = (results) => results.is_search ? h("p", {}, "These are the runs of a search. ", h("a", { href: findings(results.id) }, "What it found")) : "";
 
 const when = (text) => (text ? text.slice(0, 16).replace("T", " ") : "");
 

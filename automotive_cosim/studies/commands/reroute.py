@@ -59,7 +59,7 @@ def reroute(
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
-    """Fork the running traffic at every decision to reroute and drive both futures.
+    """Fork the running traffic at every decision to reroute and drive both routes.
 
     Rerun the command to resume a stopped study.
     """
