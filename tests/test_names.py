@@ -35,7 +35,7 @@ def test_no_two_classes_share_a_name():
 # --- the words for one thing run ---------------------------------------------------------------------------------
 
 ROOT = Path(__file__).parents[1]
-KEPT = re.compile(r"`[^`]*`|--[\w-]+|\[\[?\w+\]?\]|\b\w*[_./]\w[\w./]*|\$\{[^}]*\}|\{[{%].*?[%}]\}", re.DOTALL)
+KEPT = re.compile(r"`[^`]*`|--[\w-]+|\[\[?\w+\]?\]|\b\w*[_./]\w[\w./]*|\$\{[^}]*\}")
 """Names of options, fields and files, which keep theirs, and what a text is filled with."""
 OTHERWISE = {
     "point": r"percentage points|points of score|of 100 points|\{\} points|offset points|or points |no point|<point>"
@@ -61,7 +61,7 @@ def shown() -> Iterator[tuple[str, str]]:
         yield from literals(name, ast.parse(Path(name).read_text(encoding="utf-8")))
     for kind in ("html", "js", "typ"):
         for name in glob(f"{folder}/**/*.{kind}", recursive=True):  # noqa: PTH207
-            text = Path(name).read_text(encoding="utf-8")
+            text = re.sub(r"\{\{.*?\}\}|\{%.*?%\}", "", Path(name).read_text(encoding="utf-8"), flags=re.DOTALL)
             texts = re.findall(r">([^<>{}]+)<|\"([^\"\n]*)\"|`([^`]*)`", text)
             yield from ((name, each) for found in texts for each in found if " " in each or each.istitle())
 

@@ -154,28 +154,27 @@ def evaluate(
 
 
 def _short(found: Results, at_least: float) -> list[str]:
-    """What is below a share, agent by agent: of the planned episodes, or of the score of drives.
-
-    All drives must have run.
+    """What is below a share, agent by agent: of the episodes that were run, or of the score of drives; and what was
+    not run, as everything must have been.
     """
     from automotive_cosim.report.drives import grouped, whole
 
     told = []
     for each in found.contestants:
-        planned = found.planned_of(each)
-        won = sum(row.has_succeeded for row in planned)
-        if won < at_least * len(planned):
+        ran = found.of(each)
+        won = sum(row.has_succeeded for row in ran)
+        if won < at_least * len(ran):
             told.append(
-                f"{each.label}: {won:,} of {counted(len(planned), 'episode')} succeeded, a smaller share than "
-                f"{at_least:g}"
+                f"{each.label}: {won:,} of {counted(len(ran), 'episode')} succeeded, a smaller share than {at_least:g}"
             )
     for each, rows in grouped(found.drives).items():
         points = whole(rows).value
         if points < 100 * at_least:
             score = f"{points:.0f}".replace("-", "−")
             told.append(f"{each.label}: score {score}, less than {100 * at_least:g} of 100 points")
-    if found.drives_not_run:
-        told.append(f"{counted(len(found.drives_not_run), 'drive')} not run")
+    for unit, left in (("episode", found.not_run), ("drive", found.drives_not_run)):
+        if left:
+            told.append(f"{counted(len(left), unit)} not run")
     return told
 
 

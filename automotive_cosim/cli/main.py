@@ -21,6 +21,7 @@ from automotive_cosim.cli import (
     a2a,
     agents,
     bench,
+    ci,
     compare,
     doctor,
     drive,
@@ -73,6 +74,7 @@ app.add_typer(tasks.app, name="tasks", rich_help_panel=CONTENTS)
 app.add_typer(scenarios.app, name="scenarios", rich_help_panel=CONTENTS)
 app.add_typer(agents.app, name="agents", rich_help_panel=CONTENTS)
 app.add_typer(show.app, name="show", rich_help_panel=CONTENTS)
+app.add_typer(ci.app, name="ci", rich_help_panel=TOOLS)
 app.command(rich_help_panel=TOOLS)(doctor.doctor)
 app.command(rich_help_panel=TOOLS)(bench.bench)
 app.command(rich_help_panel=TOOLS)(mcp.mcp)

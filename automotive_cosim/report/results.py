@@ -215,8 +215,9 @@ def pair_instance(row: EpisodeRow) -> tuple[object, ...]:
 def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[EpisodeRow]]]:
     """Each pair as one episode-like row, which succeeds if both halves do, with its two halves.
 
-    If one half ended in an error, the pair is an error, unless the other half failed; if one half has not been run,
-    the pair has not been run, with the same exception.
+    If one half has not been run, the pair has not been run: those whose first half failed would else be lost, and
+    those whose first half succeeded not counted. If one ended in an error, the pair is an error, unless the other
+    half failed.
     """
     found: dict[str, list[EpisodeRow]] = {}
     for row in rows:
@@ -226,7 +227,9 @@ def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[Episode
     for halves in found.values():
         if len(halves) == 2:
             outcomes = [half.success for half in halves]
-            success = False if False in outcomes else None if None in outcomes else True
+            waiting = [half for half in halves if not half.has_run]
+            success = None if waiting else False if False in outcomes else None if None in outcomes else True
             shown = max(halves, key=lambda half: half.error is not None) if success is None else halves[0]
+            shown = waiting[0] if waiting else shown
             joined.append((replace(shown, success=success), halves))
     return joined
