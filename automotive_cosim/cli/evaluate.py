@@ -27,7 +27,7 @@ from automotive_cosim.cli.options import (
     print_json,
 )
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.plain import counted, megabytes_in_words
+from automotive_cosim.contracts.plain import counted, megabytes_in_words, model_and_options
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError, UserError, install_hint
 from automotive_cosim.run.settings import Budget, EvaluationSettings, PlanSettings, RunSettings
@@ -164,9 +164,8 @@ def _short(found: Results, at_least: float) -> list[str]:
         ran = found.of(each)
         won = sum(row.has_succeeded for row in ran)
         if won < at_least * len(ran):
-            told.append(
-                f"{each.label}: {won:,} of {counted(len(ran), 'episode')} succeeded, a smaller share than {at_least:g}"
-            )
+            of = f"{won:,} of {counted(len(ran), 'episode')}"
+            told.append(f"{each.label}: {of} succeeded, a smaller share than {at_least:g}")
     for each, rows in grouped(found.drives).items():
         points = whole(rows).value
         if points < 100 * at_least:
@@ -225,7 +224,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
 
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
-    table.add_row("agents", ", ".join(sorted({f"{job.agent} ({job.model})" for job in jobs})))
+    table.add_row("agents", ", ".join(sorted({f"{job.agent} ({model_and_options(job.model)[0]})" for job in jobs})))
     episodes = [job for job in jobs if isinstance(job, EpisodeSetup)]
     if episodes:
         table.add_row("tasks", f"{len({job.task for job in episodes})} (pairs in both halves)")

@@ -250,9 +250,7 @@ def tables(rows: Sequence[DriveTrialRow], folder: Path) -> list[Table]:
             _watchers(groups),
             _faults(groups),
             _acts(groups, folder),
-            act_effects(
-                folder, {row.id: f"{contestant(row).label}, {row.family}, seed {row.seed}" for row in rows}
-            ),
+            act_effects(folder, {row.id: f"{contestant(row).label}, {row.name}, seed {row.seed}" for row in rows}),
             _kinds(groups),
             _families(groups),
             _effects(groups),
@@ -320,7 +318,7 @@ def _effects(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
 def _faults(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
     """What every watcher missed, met too late, or did needlessly."""
     lines = tuple(
-        (each.label, f"{row.family}, seed {row.seed}", clock(fault.time_s), fault.what, fault.about, fault.why)
+        (each.label, f"{row.name}, seed {row.seed}", clock(fault.time_s), fault.what, fault.about, fault.why)
         for each, mine in groups.items()
         for row in mine
         for fault in faults(row.events, row.acts)
@@ -348,7 +346,7 @@ def _acts(groups: dict[Contestant, list[DriveTrialRow]], folder: Path) -> Table:
                 drove = f"{came.before_kmh:.0f}", f"{came.after_kmh:.0f}", f"{came.over_s:.0f}"
                 lines.append(
                     (
-                        *(each.label, f"{row.family}, seed {row.seed}", clock(act.time_s), act.words),
+                        *(each.label, f"{row.name}, seed {row.seed}", clock(act.time_s), act.words),
                         *(str(act.worth), came.answer or "none asked", when, came.did, *drove),
                     )
                 )
@@ -498,7 +496,7 @@ def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, Chart]:
         found = None if row.score is None else timeline_of(folder, row.id)
         if found is None:
             continue
-        plot = timeline_chart(row, found, f"{row.family}, seed {row.seed}: {contestant(row).label}")
+        plot = timeline_chart(row, found, f"{row.name}, seed {row.seed}: {contestant(row).label}")
         write_whole(make_folder(folder, "plots") / f"{row.id}.svg", plot.svg)
         if len(plots) < SHOWN:
             plots[row.id] = plot

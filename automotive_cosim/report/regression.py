@@ -254,7 +254,7 @@ def _name(row: TrialRow, unit: str) -> str:
         where = "" if unit == "pairs" else f"{f', {row.half} half' if row.pair else ''}, {row.scenario}"
         return f"{row.task}{where}, seed {row.seed}{repeat}"
     assert isinstance(row, DriveTrialRow)
-    words = (row.family, row.scenario, row.settings.words, f"seed {row.seed}")
+    words = (row.name, row.scenario, row.settings.words, f"seed {row.seed}")
     return ", ".join(filter(None, words)) + repeat
 
 

@@ -36,7 +36,7 @@ HEAD = (
     *("goal", "tokens_in", "tokens_out", "model_seconds"),
 )
 SHOWN = (
-    *("id", "task", "half", "scenario", "agent", "model", "seed", "repeat"),
+    *("id", "task", "half", "pair", "scenario", "agent", "model", "seed", "repeat"),
     *("dimension", "module"),
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )
@@ -276,7 +276,7 @@ class Content:
         }
 
     def _drive_rows(self, entry: RecordEntry, rows: Iterable[DriveTrialRow]) -> list[Json]:
-        names = ("id", "family", "scenario", "season", "agent", "model", "seed", "repeat",
+        names = ("id", "name", "family", "scenario", "season", "agent", "model", "seed", "repeat",
                  "value", "error", "error_kind", "end", "steps")  # fmt: skip
         return [
             {name: getattr(row, name) for name in names}

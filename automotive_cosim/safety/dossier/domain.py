@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
 
 from automotive_cosim.contracts.given import Language
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import counted, model_and_options
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.order import STANDING_ORDERS
 from automotive_cosim.measures import ExposureCell
@@ -49,7 +49,7 @@ def item(subject: Subject) -> Section:
     lines = [
         ("Item", "an agent that operates the cockpit of a car: it reads the screens and the car's data, and acts"),
         ("Agent", subject.agent),
-        ("Model", ", ".join(sorted({row.model for row in subject.rows}))),
+        ("Model", ", ".join(sorted({model_and_options(row.model)[0] for row in subject.rows}))),
         ("Conditions", "; ".join(conditions)),
         ("Run with", f"automotive-cosim {subject.results.version}"),
         ("Not part of it", "the driver (a model of SUMO, with a profile), the road and the car's sensors"),

@@ -134,7 +134,7 @@ def _faults(subject: Subject, *, in_space: bool) -> Table:
     several = len({(row.repeat, row.settings, row.conditions) for row in drives}) > 1
     lines = tuple(
         (
-            row.id if several else f"{row.family}, seed {row.seed}",
+            row.id if several else f"{row.name}, seed {row.seed}",
             clock(fault.time_s),
             fault.what,
             fault.about,

@@ -1,10 +1,10 @@
 // Two evaluations, or two agents of one, side by side: instance by instance, and two episodes step by step.
 
-import { ask, counted, h, outcome, plain, seconds } from "./dom.js";
+import { ask, counted, h, modelName, outcome, plain, seconds } from "./dom.js";
 import { RoadRecord, RoadView } from "./road.js";
 
 const MOST = 400;
-const label = (row) => [row.agent, row.model !== "none" && row.model, ...row.conditions].filter(Boolean).join(", ");
+const label = (row) => [row.agent, row.model !== "none" && modelName(row.model), ...row.conditions].filter(Boolean).join(", ");
 const instance = (row) => [row.task, row.half, row.scenario, row.seed, row.repeat].join(" ");
 const won = (row) => (row?.success === true ? "won" : row?.success === false ? "lost" : row ? "error" : "not run");
 const CHANGES = { "": "all episodes", differs: "different outcome", better: "only the second won", worse: "only the first won", both: "both won", neither: "neither won" };
@@ -115,7 +115,7 @@ function side(run, steps, base, jump) {
   const said = h("p", { class: "muted" });
   const parts = Object.entries(run.verdict?.parts ?? {}).filter(([, part]) => !part.ok).map(([name, part]) => `${run.parts[name] ?? plain(name)}: ${part.why}`);
   return {
-    element: h("section", {}, h("h2", {}, [run.agent, run.model !== "none" && run.model, ...(run.conditions ?? [])].filter(Boolean).join(" · "), " ", outcome(run)),
+    element: h("section", {}, h("h2", {}, [run.agent, run.model !== "none" && modelName(run.model), ...(run.conditions ?? [])].filter(Boolean).join(" · "), " ", outcome(run)),
       h("div", { class: "card stage-one" }, h("div", { class: "frame" }, screen, empty)), said, h("div", { class: "card" }, list),
       parts.length ? h("p", { class: "muted" }, parts.join("; ")) : null),
     show(at) {
