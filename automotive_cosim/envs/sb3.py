@@ -21,8 +21,8 @@ except ImportError as error:
 def vec_env(name: str = "AutomotiveCosim/Flat-v0", num_envs: int = 8, **options: Any) -> VecEnv:
     """What ``gym.make_vec(name, num_envs, **options)`` makes, as ``PPO(...)`` takes it.
 
-    ``seed(s)`` and the first ``reset`` take the traffic of seed ``s`` for all copies, and draw all else of copy ``i``
-    from ``s + i``.
+    ``seed(s)`` and the ``reset`` after it take the traffic of seed ``s`` for all copies, and draw all else of copy
+    ``i`` from ``s + i``.
     """
     made = gym.make_vec(name, num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **options)
     return _Shared(cast("ConcurrentVectorEnv", made))

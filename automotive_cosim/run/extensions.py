@@ -26,6 +26,8 @@ class ResultsKind:
 
     page: str
     """Of the folder; writes the report into it and returns ``report.html``."""
+    unit: str
+    """What one of its rows is about: ``drive`` or ``seed``."""
     served: Mapping[str, str] = field(default_factory=dict)
     """What the pages of ``serve`` ask, by the last part of its address; each of the folder, and of the item."""
 

@@ -27,8 +27,9 @@ def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
 KINDS = {
     RerouteSettings.kind: ResultsKind(
         f"{HOME}.reroute.page:write_study",
+        "drive",
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
-    CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion"),
-    DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days"),
+    CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion", "seed"),
+    DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days", "share of a seed"),
 }

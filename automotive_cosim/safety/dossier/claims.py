@@ -75,8 +75,8 @@ def _preventable(subject: Subject) -> Claim:
         theirs = sum(event.outcome.is_credited for event in careful)
         evidence += f" The rule-perfect watcher of the same run met {theirs} of {len(careful)}."
     kept = {id(event) for event in real}
-    units = {(row.family, row.seed) for row in subject.drives if any(id(event) in kept for event in row.events)}
-    status, few = _status(subject, len(real) - met, len(units), "drive")
+    met_in = {(row.family, row.seed) for row in subject.drives if any(id(event) in kept for event in row.events)}
+    status, few = _status(subject, len(real) - met, len(met_in), "drive")
     return Claim(text, status, evidence + few, "events")
 
 

@@ -17,7 +17,7 @@ export async function runsPage() {
   return { title: "Runs", content: [h("h1", {}, "Runs"), note, list], leave: () => clearInterval(timer) };
 }
 
-const WHOLE = { evaluation: ["results", "Evaluation", "episode"], drives: ["results", "Evaluation of drives", "drive"], study: ["decisions", "Study", "drive"] };
+const WHOLE = { evaluation: ["results", "Evaluation", "episode"], drives: ["results", "Evaluation of drives", "drive"], study: ["decisions", "Study"] };
 
 function line(record, records) {
   if (record.kind === "unreadable") {
@@ -25,8 +25,8 @@ function line(record, records) {
       h("span", { class: "pill bad" }, "Unreadable"));
   }
   if (WHOLE[record.kind]) {
-    const [page, whole, unit] = WHOLE[record.kind];
-    const label = record.is_search ? "Search" : whole;
+    const [page, whole, unit = record.unit] = WHOLE[record.kind];
+    const label = record.is_search ? "Search" : record.seeds ? `${whole} of ${counted(record.seeds, "seed")}` : whole;
     const done = record.planned ? `${record.done} of ${counted(record.planned, unit)}` : counted(record.done, unit);
     return h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/${page}/${record.id}` }, record.name), h("p", { class: "muted" }, `${label} · ${done} · ${when(record.started)}`)),
