@@ -148,10 +148,10 @@ def _tell(console: Console, row: DriveTrialRow, timeline: Json) -> None:
         console.print(f"  {fault.line}", markup=False, soft_wrap=True)
     found = row.score
     assert found is not None
-    model, _ = model_and_options(row.model)
     recall = "no events" if found.recall is None else f"{found.met} of {found.events} events met"
+    model = "" if row.model == "none" else f" ({model_and_options(row.model)[0]})"
     console.print(
-        f"{row.name}, seed {row.seed}, {row.agent} ({model}): score {found.value:.0f}; {recall}, "
+        f"{row.name}, seed {row.seed}, {row.agent}{model}: score {found.value:.0f}; {recall}, "
         f"{found.false_alarms_per_h:.1f} false alarms and {found.nuisances_per_h:.1f} nuisances an hour, "
         f"{row.steps} steps in {found.driven_s / 60:.0f} min",
         soft_wrap=True,

@@ -224,7 +224,8 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
 
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
-    table.add_row("agents", ", ".join(sorted({f"{job.agent} ({model_and_options(job.model)[0]})" for job in jobs})))
+    agents = {f"{job.agent} ({model_and_options(job.model)[0]})".removesuffix(" (none)") for job in jobs}
+    table.add_row("agents", ", ".join(sorted(agents)))
     episodes = [job for job in jobs if isinstance(job, EpisodeSetup)]
     if episodes:
         table.add_row("tasks", f"{len({job.task for job in episodes})} (pairs in both halves)")

@@ -44,7 +44,7 @@ class SearchBudget:
             name = {"": "points", "h": "hours", "min": "hours", "usd": "usd"}[unit]
             value = float(found["number"]) / (60 if unit == "min" else 1)
             if name in given:
-                raise UserError(f"the budget {text!r} has {part.strip()!r} twice; give {EXAMPLES}")
+                raise UserError(f"the budget {text!r} has {name} twice; give {EXAMPLES}")
             if not 0 < value <= MOST_POINTS or (name == "points" and value != int(value)):
                 raise UserError(f"{part.strip()!r} is no budget: more than 0, combinations whole; give {EXAMPLES}")
             given[name] = value
@@ -66,8 +66,11 @@ def progress_in_words(budget: SearchBudget, points: int, used_s: float, each_s: 
         used_s: wall time so far, with earlier starts.
         each_s: wall time of a run; 0 while unknown.
     """
-    whole = "" if budget.points is None else f"{points} of "
-    told = [whole + counted(points if budget.points is None else budget.points, "combination")]
+    told = [
+        counted(points, "combination")
+        if budget.points is None
+        else f"{points} of {counted(budget.points, 'combination')}"
+    ]
     left_s = []
     if budget.points is not None and each_s:
         left_s.append(each_s * (budget.points - points))

@@ -38,6 +38,6 @@ class SearchOrder:
     save: Path | None = None
     """File for a plan with every minimal failure and its passing neighbour, for `eval --plan`."""
     at_most: Annotated[int | None, Ge(0)] = None
-    """Exit with code 1 if more combinations fail, or the nominal one does, or nothing was due in any."""
+    """Exit with code 1 if more runs fail, or the nominal one does, or nothing was due in any."""
     dry_run: bool = False
     """Say how long it will take, and what is missing, and exit."""

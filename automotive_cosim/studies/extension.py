@@ -28,6 +28,7 @@ KINDS = {
     RerouteSettings.kind: ResultsKind(
         f"{HOME}.reroute.page:write_study",
         "drive",
+        f"{HOME}.reroute.decisions:attributed",
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
     CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion", "seed"),

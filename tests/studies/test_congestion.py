@@ -17,6 +17,7 @@ from automotive_cosim.cli.results import report
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.incidents import EgoIncident
 from automotive_cosim.run.batch import Progress
+from automotive_cosim.studies import load_study
 from automotive_cosim.studies.commands import app
 from automotive_cosim.studies.congestion.drive import CONGESTION
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.judge import EventOutcome
-from automotive_cosim.report.stats import rate, rate_upper_bound, upper_bound
-from automotive_cosim.safety.dossier.domain import NONE, domain
+from automotive_cosim.report.stats import rate, rate_upper_bound
+from automotive_cosim.safety.dossier.domain import tried
 from automotive_cosim.safety.dossier.subject import (
     NOT_COMPLIANT,
     Claim,
@@ -16,12 +16,11 @@ from automotive_cosim.safety.dossier.subject import (
 )
 from automotive_cosim.safety.findings import percent
 
-MOST_UNSEEN = 0.1
-"""A claim without a failure is supported if no more than this share may fail all the same: from 29 independent
-drives or tasks on."""
+ENOUGH = 0.5
+"""A claim is supported only if, at the level of confidence, fewer such units fail: five without a failure."""
 CLAIMS = (
-    "Each claim is about this run. Supported: the run has evidence for it and none against it, from so many drives "
-    f"or tasks that at most {percent(MOST_UNSEEN)} of such would fail. Contradicted: "
+    "Each claim is about this run. Supported: the run has evidence for it and none against it, from at least five "
+    "independent units in which something was due. Contradicted: "
     "it has evidence against it. Limited: it says something, with the bound that is given. Not examined: it says "
     "nothing. " + NOT_COMPLIANT
 )
@@ -61,9 +60,10 @@ def _preventable(subject: Subject) -> Claim:
             if found.interval is None or subject.findings is not None
             else f", {100 * found.interval.low:.0f} to {100 * found.interval.high:.0f} %"
         )
-        total, units = len(subject.episodes), len({row.task for row in subject.episodes})
-        status, few = _status(subject, total - passed, units, "task")
-        return Claim(text, status, f"{passed} of {counted(total, 'episode')} passed{bounds}.{few}", "events")
+        status = _status(subject, passed == len(subject.episodes))
+        return Claim(
+            text, status, f"{passed} of {counted(len(subject.episodes), 'episode')} passed{bounds}.", "events"
+        )
     met = sum(event.outcome.is_credited for event in real)
     void = sum(event.outcome is EventOutcome.VOID for event in events)
     evidence = (
@@ -74,21 +74,14 @@ def _preventable(subject: Subject) -> Claim:
     if careful:
         theirs = sum(event.outcome.is_credited for event in careful)
         evidence += f" The rule-perfect watcher of the same run met {theirs} of {len(careful)}."
-    kept = {id(event) for event in real}
-    met_in = {(row.family, row.seed) for row in subject.drives if any(id(event) in kept for event in row.events)}
-    status, few = _status(subject, len(real) - met, len(met_in), "drive")
-    return Claim(text, status, evidence + few, "events")
+    return Claim(text, _status(subject, met == len(real)), evidence, "events")
 
 
-def _status(subject: Subject, lost: int, units: int, unit: str) -> tuple[str, str]:
-    """What so many independent units say of a claim, and in words why that is no more, if it is not."""
-    if lost:
-        return "contradicted", ""
-    told = subject.findings["failure_rate_upper"] if subject.findings else upper_bound(0, units)
-    if told is not None and told <= MOST_UNSEEN:
-        return "supported", ""
-    bound = "" if told is None else f": as many as {percent(told)} of such may fail"
-    return "limited", f" {counted(units, unit)} cannot support more{bound}."
+def _status(subject: Subject, every: bool) -> str:
+    """What a claim is if every one of the cases is for it, or not."""
+    if not every:
+        return "contradicted"
+    return "supported" if failing(subject)[2] < ENOUGH else "limited"
 
 
 def _quiet(subject: Subject) -> Claim:
@@ -101,14 +94,14 @@ def _quiet(subject: Subject) -> Claim:
     if subject.findings is None:
         evidence += f", at most {number_told(rate_upper_bound(nuisances, hours))} an hour."
     else:
-        evidence += "; what a search drew to failures gives no rates."
+        evidence += "; runs of a search give no rates."
     section = "unseen" if subject.findings is None else "failures"
     return Claim(text, "contradicted" if nuisances else "limited", evidence, section)
 
 
 def _known_hazards(subject: Subject) -> Claim:
     text = "Known hazardous situations (area 2 of ISO 21448) are few and described by what triggers them."
-    failed = counted(len(subject.failed), f"failing {subject.unit}")
+    failed = counted(len(subject.failed), "failing run")
     if subject.findings is None:
         status = "not examined" if subject.failed else "limited"
         return Claim(text, status, f"{failed}; no search has found what triggers them.", "failures")
@@ -133,14 +126,13 @@ def _unknown(subject: Subject) -> Claim:
 
 
 def _covered(subject: Subject) -> Claim:
-    section = domain(subject)
-    empty = sum(str(row[2]) == NONE for row in section.tables[0].rows)
-    total = len(section.tables[0].rows)
-    status = "limited" if empty else "supported"
+    values = [known for each in tried(subject).values() for known in each.values()]
+    covered = sum(bool(known) for known in values)
+    status = "supported" if covered == len(values) else "limited"
     return Claim(
         "The run covers the operational domain.",
         status,
-        f"{total - empty} of {total} values have a {subject.unit}.",
+        f"{covered} of {len(values)} values have a run.",
         "domain",
     )
 
@@ -151,6 +143,6 @@ def _traced(subject: Subject) -> Claim:
     have = "has a hash of its" if total == 1 else "have a hash of their"
     return Claim(
         "The evidence can be checked and repeated.", "supported" if traced == total else "limited",
-        f"{traced} of {counted(total, subject.unit)} {have} trace; the files' hashes are listed.",
+        f"{traced} of {counted(total, 'run')} {have} trace; the files' hashes are listed.",
         "versions",
     )  # fmt: skip

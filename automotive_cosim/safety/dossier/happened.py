@@ -8,13 +8,14 @@ from statistics import median
 
 import numpy as np
 
-from automotive_cosim.contracts.plain import clock
+from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.measures import DEFAULT_THRESHOLDS
 from automotive_cosim.report.stats import CONFIDENCE
 from automotive_cosim.report.tables import Table
+from automotive_cosim.run.attribution import NOT_MEASURED, culprit, path_of, read_effects
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.safety.dossier.subject import CONFIDENCE_WORDS, Section, Subject, hours_of
 
@@ -26,7 +27,7 @@ DRAWS = 2000
 """Bootstrap samples, at which the second digit of a bound is stable."""
 LEAST_CLUSTERS = 5
 """Fewer trials give no bootstrap interval."""
-NO_RATES = "What a search drew to failures is counted and gives no rates."
+NO_RATES = "A search's runs are drawn to failures, so that they are counted and give no rates."
 
 
 def events(subject: Subject) -> Section:
@@ -90,33 +91,48 @@ def failures(subject: Subject) -> Section:
                 str(number),
                 each["words"],
                 each["why"],
+                each.get("act") or NOT_MEASURED,
                 each.get("beside") or "no neighbour found",
                 f"failures/{number:02d}.toml",
             )
             for number, each in enumerate(subject.findings["failures"], 1)
         )
-        heads = "No.", "Fails with", "What is missing", "Beside it", "Replay"
+        heads = "No.", "Fails with", "What is missing", "Act, or missing act", "Beside it", "Replay"
         note = (
             "Each failed three times of three; factors that are not named are nominal. Replay: automotive-cosim "
             "eval --plan with that file, which also has what is beside it: the nearest that does not fail."
         )
         if cases:
-            made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=5))
+            made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=6))
     else:
         told.append(
             "No search was made, so that the conditions which each failure needs are not known. automotive-cosim "
             "search finds them."
         )
-    lines = tuple((row.id, subject.missing(row) or "–") for row in subject.failed[:MOST_FAILURES])
+    folder = subject.results.folder
+    lines = tuple(
+        (row.id, subject.missing(row) or "–", culprit(read_effects(path_of(folder, row.id))) or NOT_MEASURED)
+        for row in subject.failed[:MOST_FAILURES]
+    )
     if lines:
         more = len(subject.failed) - len(lines)
         note = (
-            "automotive-cosim replay FOLDER ID runs it again and says whether every step is the same, bit "
-            "for bit." + (f" {more} more are in the data." if more else "")
+            "automotive-cosim replay FOLDER ID runs a run again and says whether every step is the same, bit "
+            "for bit; automotive-cosim attribute FOLDER ID finds the act, or the missing act, that made it."
+            + (f" {more} more are in the data." if more else "")
         )
-        made.append(Table("failures", f"Failing {subject.unit}s", ("Id", "What is missing"), lines, note, heads=2))
+        made.append(
+            Table(
+                "failures",
+                "Failing runs",
+                ("Run", "What is missing", "Act, or missing act"),
+                lines,
+                note,
+                heads=3,
+            )
+        )
     else:
-        told.append(f"No judged {subject.unit} failed.")
+        told.append(f"None of {counted(len(subject.due), 'run')} in which something was due failed.")
     made += [listed for in_space in (True, False) if (listed := _faults(subject, in_space=in_space)).rows]
     return Section("failures", "Failures", tuple(told), tuple(made))
 
@@ -147,7 +163,7 @@ def _faults(subject: Subject, *, in_space: bool) -> Table:
         "When: minutes and seconds since departure at which something was due, or the agent acted. Why: what was "
         "there, from when to when something was due, and what came; of a needless act, what speaks against it of "
         "what could be known, and when it would have been right."
-        + (f" {more} more are in the data." if more else "")
+        + (f" {more} more are in the runs of the data." if more else "")
     )
     heads = "Drive", "When", "What", "Event or act", "Why"
     if in_space:
@@ -191,13 +207,13 @@ def measured(subject: Subject) -> Section:
         if value is not None:
             lines.append((name, "–", f"{value:.2f}", bounds))
     note = (
-        f"Worst and median of the {subject.unit}s; then how many of them were critical"
+        "Worst and median of the runs; then how many of them were critical"
         + (f". {NO_RATES} " if subject.findings else f", with Wilson's interval ({CONFIDENCE_WORDS}). ")
-        + f"TET and TIT: per hour driven, with the interval from resampling whole {subject.unit}s. Definitions, "
-        "with sources: docs/reference/failures.md. SUMO's drivers avoid collisions by construction: compare runs "
-        "with each other."
+        + "TET and TIT: per hour driven, with the interval from resampling whole runs. Definitions, with "
+        "sources: docs/reference/failures.md. SUMO's drivers avoid collisions by construction: compare runs with "
+        "each other."
     )
-    heads = "Measure", "Worst", "Median or rate", "How many critical, or interval"
+    heads = "Measure", "Worst", "Median or rate", "Critical runs, or interval"
     return Section(
         "measures",
         "Surrogate measures",
@@ -212,7 +228,7 @@ def _per_hour(pairs: Sequence[tuple[float, float]]) -> tuple[float | None, str]:
         return None, ""
     value = float(table[:, 0].sum() / table[:, 1].sum())
     if len(table) < LEAST_CLUSTERS:
-        return value, f"too few for an interval ({len(table)})"
+        return value, f"too few runs for an interval ({len(table)})"
     rng = np.random.default_rng(0)
     drawn = table[rng.integers(len(table), size=(DRAWS, len(table)))].sum(axis=1)
     low, high = np.percentile(drawn[:, 0] / drawn[:, 1], [50 * (1 - CONFIDENCE), 50 * (1 + CONFIDENCE)])

@@ -9,6 +9,7 @@ from math import log, sqrt
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.stats import CONFIDENCE, rate_upper_bound
 from automotive_cosim.report.tables import Table
+from automotive_cosim.safety.dossier.domain import never, tried
 from automotive_cosim.safety.dossier.subject import (
     CONFIDENCE_WORDS,
     Section,
@@ -38,14 +39,18 @@ def missing_mass(counts: Iterable[int]) -> tuple[float, float]:
 
 
 def unseen(subject: Subject) -> Section:
-    """Bounds on failures, rates and situations that were not seen."""
+    """What the run leaves open: how little was driven, what was never tried, and bounds on what was not seen."""
     lines: list[tuple[str, str, str]] = []
-    told = []
+    told = [exposure_told(subject)]
+    values = "; ".join(f"{name.lower()} {', '.join(values)}" for name, values in never(subject).items())
+    only = ", ".join((*tried(subject)["Place"], *tried(subject)["Language"]))
+    told.append(f"Never tried: {values or 'no value that the benchmark knows'}; any place and language but {only}.")
+    told.append(residual(subject))
     if subject.findings is not None:
         found = subject.findings
         told.append(
-            "What a search drew to failures gives no rates: its bounds are over the combinations alone that "
-            "represent the whole space."
+            "Runs of a search are drawn to failures, so that rates of its runs say nothing about the space; "
+            "its bounds are over the combinations alone that represent the whole space."
         )
         for name, key in (
             ("Failure rate in the space searched", "failure_rate_upper"),
@@ -88,11 +93,31 @@ def unseen(subject: Subject) -> Section:
         tuple(lines),
         "Units: drives of one family and seed, or episodes of one task, count once, if something was due in "
         "them. Kinds: a place with a kind of "
-        "event, or a task's half in a place. All bounds are for drives and tasks drawn as these were, not for "
-        "the road.",
+        "event, or a task's half in a place. All bounds are for runs drawn as these were, not for the road.",
         heads=3,
     )  # fmt: skip
-    return Section("unseen", "What was not seen", tuple(told), (table,))
+    return Section("unseen", "What was not shown", tuple(told), (table,))
+
+
+def exposure_told(subject: Subject) -> str:
+    """How much was driven, and in how much of it something was due."""
+    km = sum(cell.kilometres for row in subject.judged for cell in row.exposure)
+    driven = f"{subject.hours:.2f} h and {km:.0f} km were driven in {counted(len(subject.judged), 'run')}"
+    due = len(subject.due)
+    return f"{driven}; something was due in {due or 'none'} of them" + ("." if due else ", so nothing is shown.")
+
+
+def residual(subject: Subject) -> str:
+    """The bound on failures that may remain, in words."""
+    bad, total, upper = failing(subject)
+    if subject.findings is not None:
+        bound = subject.findings["failure_rate_upper"]
+        where = "of the space searched, where something is due"
+    else:
+        bound, where = (upper if total else None), f"of such situations ({bad} of {counted(total, 'unit')} did)"
+    if bound is None or bound >= 1:
+        return "No bound on failures follows: too little was due."
+    return f"Up to {percent(bound)} {where}, may fail ({CONFIDENCE_WORDS})."
 
 
 def _rates(subject: Subject) -> Iterator[tuple[str, str, str]]:
@@ -131,24 +156,26 @@ def areas(subject: Subject) -> Section:
     lines = (
         (
             "1: known, not hazardous",
-            f"{counted(passed, subject.unit)} that passed"
-            + (f"; {counted(empty, f'more {subject.unit}')} in which nothing was due" if empty else ""),
+            f"{counted(passed, 'run')} that passed"
+            + (f"; {counted(empty, 'more run')} in which nothing was due" if empty else ""),
             "Events, Operational domain covered",
         ),
-        ("2: known, hazardous", f"{counted(len(failures), subject.unit)} that failed{minimal}", "Failures"),
+        ("2: known, hazardous", f"{counted(len(failures), 'run')} that failed{minimal}", "Failures"),
         (
             "3: unknown, hazardous",
             "not known"
             if bound is None
             else f"at most {percent(bound)} of situations drawn as here, area 2 included",
-            "What was not seen",
+            "What was not shown",
         ),
         (
             "4: unknown, not hazardous",
             "the rest of the domain",
-            f"Operational domain covered: values without a {subject.unit}",
+            "Operational domain covered: values without a run",
         ),
     )
-    note = "Areas of ISO 21448 (SOTIF). Hazardous stands for a failure: harm depends on the driver and the traffic."
+    note = (
+        "Areas of ISO 21448 (SOTIF). Hazardous stands for a failed run: harm depends on the driver and the traffic."
+    )
     table = Table("areas", "Areas", ("Area", "In this run", "Section"), lines, note, heads=3)
     return Section("areas", "Known and unknown, hazardous and not", tables=(table,))

@@ -51,7 +51,9 @@ def charts(study: CongestionStudy) -> dict[str, Chart]:
         "map": ("Time lost on the road without a measure", lost_map(study, network, 0, WIDE_IN)),
     }
     narrow = {"map": lost_map(study, network, 0, NARROW_IN)}
-    measures = sorted((each for each in all_measures(study) if each[0]), key=lambda each: each[0] != strongest(study))
+    measures = sorted(
+        (each for each in all_measures(study) if each[0]), key=lambda each: each[0] != strongest(study)
+    )
     shown = measures[:1]
     for number, name in measures:
         key = "map_change" if (number, name) in shown else f"map_change_{number}"
