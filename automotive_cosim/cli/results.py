@@ -96,14 +96,15 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
     if as_json:
         print_json({"acts": [asdict(each) | {"effect": each.effect} for each in effects]})
         return
+    from automotive_cosim.run.attribution import sentence
+
+    typer.echo(sentence(effects))
     for each in effects:
         step = f"step {' and '.join(map(str, each.steps))}, " if each.steps else ""
         typer.echo(f"{step}{clock(each.at_s)}  {each.act}")
         if each.came:
             typer.echo(f"    driver: {each.came}")
         typer.echo(f"    effect: {each.effect}")
-    if not effects:
-        typer.echo("the agent commanded nothing: what happened is the do-nothing run")
 
 
 @reads_results

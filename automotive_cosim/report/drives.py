@@ -80,6 +80,7 @@ def _left_alone(rows: Sequence[DriveTrialRow]) -> str:
     return f"; nobody watched {counted(len(from_s), 'drive')} to the end, one from {clock(min(from_s))} on"
 
 
+SCALE = "a score of 0 is doing nothing, 100 the rule-perfect watcher"
 DIVERGE = (
     "Watchers meet different events on the same drive: after the first act, driver and traffic go another way."
 )
@@ -288,7 +289,7 @@ def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         "Watchers",
         ("Watcher", "Drives", "Hours", *(name for name, _, _ in FIGURES)),
         lines,
-        "Score: 0 is doing nothing, 100 is the rule-perfect watcher; a nuisance costs as much as a miss of weight "
+        f"{SCALE[2:].capitalize()}; a nuisance costs as much as a miss of weight "
         f"1, a look-alike taken for an event twice its weight. {DIVERGE} Known to act: median from when an event "
         "could be known to the act that met it; due to act: from when it was due, of events met after that, where "
         f"up to {FULL_S:g} s cost nothing. {_intervals_told(groups)}",

@@ -379,7 +379,7 @@ def _before_and_after(each: SuccessChange) -> str:
         before, after = (
             (each.found.both + only) / each.found.count for only in (each.found.only_second, each.found.only_first)
         )
-        told = f"{before:.0%} before, {after:.0%} after"
+        told = f"success {before:.0%} before, {after:.0%} after"
     told += f", of {counted(common, unit)}"
     if lost := each.count("error"):
         told += f", of which {lost:,} {'is' if lost == 1 else 'are'} no longer judged"

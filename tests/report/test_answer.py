@@ -18,9 +18,9 @@ def compared(both, only_first, only_second):
 @pytest.mark.parametrize(
     ("cells", "words"),
     [
-        ((10, 10, 0), "a beats b by 50 points ("),
-        ((10, 1, 1), "a and b cannot be told apart: a difference of 0 points (−"),
-        ((10, 0, 1), "a and b cannot be told apart: a difference of −9 points (−"),
+        ((10, 10, 0), "a beats b by 50 percentage points ("),
+        ((10, 1, 1), "a and b cannot be told apart: a difference of 0 percentage points (−"),
+        ((10, 0, 1), "a and b cannot be told apart: a difference of −9 percentage points (−"),
     ],
 )
 def test_who_is_better_is_said_only_if_the_interval_says_it(cells, words):
@@ -32,8 +32,8 @@ def test_who_is_better_is_said_only_if_the_interval_says_it(cells, words):
 @pytest.mark.parametrize(
     ("cells", "words"),
     [
-        ((0, 2, 0), "a is 100 points ahead of b on 2 pairs of 2 tasks, "),
-        ((0, 0, 1), "b is 100 points ahead of a on 1 pair of 1 task, "),
+        ((0, 2, 0), "a is 100 percentage points ahead of b on 2 pairs of 2 tasks, "),
+        ((0, 0, 1), "b is 100 percentage points ahead of a on 1 pair of 1 task, "),
         ((4, 0, 0), "a and b are level on 4 pairs of 4 tasks, "),
     ],
 )

@@ -193,7 +193,7 @@ def test_few_trials_leave_a_claim_limited_and_the_report_leads_with_what_is_open
     first = dossier(made).sections[0]
     assert first.title == "What was not shown"
     driven, never, residual = first.told
-    assert driven == f"{0.4 * trials:.2f} h and {14 * trials} km were driven in {counted(trials, 'trial')}; " + (
+    assert driven == f"{0.4 * trials:.2f} h and {14 * trials} km were driven in {counted(trials, 'run')}; " + (
         f"something was due in {trials} of them."
     )
     assert "weather rain, snow or ice;" in never

@@ -215,8 +215,8 @@ def test_where_nothing_is_ever_due_nothing_is_known() -> None:
     found = hunt(SPACE, evaluate, Listener(SPACE, 9, default_rng(0)), 9)
     assert min(told) > 1, "further from failing than any pass"
     assert (as_json(found)["samples"], unseen(found).upper) == (0, None)
-    assert sentence(found, "me") == "Nothing was due in any of 9 trials, so that nothing is known."
-    assert too_many(found, 9) == "nothing was due in any trial, so that nothing is known"
+    assert sentence(found, "me") == "Nothing was due in any of 9 runs, so that nothing is known."
+    assert too_many(found, 9) == "nothing was due in any run, so that nothing is known"
 
 
 @pytest.mark.parametrize("sampler", ["climb", "random", "sobol"])
