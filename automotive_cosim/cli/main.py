@@ -27,6 +27,7 @@ from automotive_cosim.cli import (
     drive,
     evaluate,
     export,
+    keep,
     mcp,
     measures,
     publish,
@@ -77,6 +78,7 @@ app.add_typer(show.app, name="show", rich_help_panel=CONTENTS)
 app.add_typer(ci.app, name="ci", rich_help_panel=TOOLS)
 app.command(rich_help_panel=TOOLS)(doctor.doctor)
 app.command(rich_help_panel=TOOLS)(bench.bench)
+app.command(rich_help_panel=TOOLS)(keep.keep)
 app.command(rich_help_panel=TOOLS)(mcp.mcp)
 app.command(rich_help_panel=TOOLS)(a2a.a2a)
 for extension in extensions():
