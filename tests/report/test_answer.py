@@ -53,3 +53,13 @@ def test_one_alone_has_its_rate_and_errors_are_counted(tmp_path):
 def test_references_are_not_ranked_unless_they_are_alone(tmp_path):
     assert answer(read_results(write(tmp_path / "a", agent="oracle"))).startswith("oracle (told the answer)")
     assert "no run ended in an error" in answer(read_results(write(tmp_path / "b")))
+
+
+def test_prices_and_options_are_no_part_of_a_models_name(tmp_path):
+    model = "provider/model?temperature=0.5&usd_per_million_in=2&usd_per_million_out=8"
+    results = read_results(write(tmp_path / "a", agent="t3a", model=model))
+    (each,) = [each for each in results.contestants if each.model == model]
+    assert each.base_model == "provider/model"
+    assert each.method == "t3a, temperature=0.5"
+    assert each.label == "t3a, provider/model, temperature=0.5"
+    assert "usd" not in answer(results)

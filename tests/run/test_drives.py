@@ -315,6 +315,15 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     recorded = read_steps(tmp_path / "drive")
     for name in ("step", "action", "thought_s", "feedback", "sha256"):
         assert [line[name] for line in recorded] == [step[name] for step in steps]
+    waits = [
+        (line["words"], round(line["at_s"] - before["at_s"]))
+        for before, line in pairwise(recorded)
+        if line["action"] and line["action"]["action_type"] == "wait"
+    ]
+    assert waits
+    assert all(abs(int(words.split()[1]) - passed_s) <= 1 for words, passed_s in waits), (
+        "what passed, not what was asked"
+    )
     told = read_trial(tmp_path / "drive")
     assert told["row"] == as_json(first)
     assert told["result"] == {"timeline": timeline}
