@@ -34,7 +34,7 @@ def report(
     ] = None,
     protocol: Annotated[
         str | None,
-        typer.Option(help="Protocol whose rows the trials speak for: euroncap-2026.", show_default=False),
+        typer.Option(help="Protocol whose rows the runs speak for: euroncap-2026.", show_default=False),
     ] = None,
 ) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""

@@ -103,7 +103,11 @@ def versus(first: str, second: str, found: Comparison, unit: str) -> str:
     if found.interval is None:
         ahead, behind = (first, second) if found.difference > 0 else (second, first)
         lead = f"{ahead} is {difference.removeprefix('−')} ahead of {behind}"
-        lead = lead if found.difference else f"{first} and {second} are level"
+        lead = (
+            lead
+            if found.difference
+            else f"{first} and {second} are level, {found.both + found.only_first} won each,"
+        )
         on = f"{counted(found.count, unit)} of {counted(found.clusters, 'task')}"
         return f"{lead} on {on}, too few to tell agents apart ({LEAST_CLUSTERS} tasks are needed)"
     points = f"{difference} ({_signed(found.interval.low)} to {_signed(found.interval.high)})"

@@ -34,7 +34,7 @@ def test_who_is_better_is_said_only_if_the_interval_says_it(cells, words):
     [
         ((0, 2, 0), "a is 100 percentage points ahead of b on 2 pairs of 2 tasks, "),
         ((0, 0, 1), "b is 100 percentage points ahead of a on 1 pair of 1 task, "),
-        ((4, 0, 0), "a and b are level on 4 pairs of 4 tasks, "),
+        ((4, 0, 0), "a and b are level, 4 won each, on 4 pairs of 4 tasks, "),
     ],
 )
 def test_few_tasks_give_no_interval(cells, words):

@@ -41,6 +41,11 @@ def people(folder: Path) -> str:
     return answer(read_results(folder))
 
 
+def safety(folder: Path) -> str:
+    made = dossier(read_subject(folder))
+    return f"{made.title}. {made.sentence}"
+
+
 def versions() -> Any:
     """Two runs of a study whose rows differ in part."""
     return SimpleNamespace(name="01_a", rows=(40, 28, 0), is_same=False)
@@ -70,7 +75,7 @@ REPORTS: dict[str, tuple[Callable[[Path], str], tuple[str, ...]]] = {
     ),
     "two agents": (
         lambda folder: answer(read_results(stopped(folder, range(len(JOBS))))),
-        ("asurada.* and t3a.* are level|ahead of|beats", r"on 4 pairs of 2 tasks", "no run ended in an error"),
+        (r"asurada.* and t3a.* are level, \d won each", r"on 4 pairs of 2 tasks", "no run ended in an error"),
     ),
     "a stopped evaluation": (
         lambda folder: answer(read_results(stopped(folder, range(11)))),
@@ -79,11 +84,16 @@ REPORTS: dict[str, tuple[Callable[[Path], str], tuple[str, ...]]] = {
     "people": (people, ("heron solves", r"of \d pairs")),
     "drives": (
         lambda folder: answer(read_results(scored(folder, [40] * 6))),
-        ("silent: score 40", r"0% of 6 events met", "6 drives", "0 is doing nothing, 100 the rule-perfect watcher"),
+        (
+            r"silent \(negative control\): score 40",
+            r"0% of 6 events met",
+            "6 drives",
+            "0 is doing nothing, 100 the rule-perfect watcher",
+        ),
     ),
     "a comparison": (
         lambda folder: plain(changes(write(folder / "a"), write(folder / "b", lost={1, 2})), 0.0).splitlines()[0],
-        ("asurada, rules stand-in is worse", r"success 100% before, 80% after", "of 10 episodes"),
+        ("asurada, rules stand-in is worse", r"success 100% before, 83% after", "of 12 episodes"),
     ),
     "rerouting": (
         lambda _: of_rerouting(rerouting(seeds(30, parted(50.0, 80.0, 90.0)))),
@@ -110,8 +120,14 @@ REPORTS: dict[str, tuple[Callable[[Path], str], tuple[str, ...]]] = {
         (r"asurada failed in \d+ of 64 runs in which something was due", r"minimal failure", r"at most \d+ %"),
     ),
     "safety": (
-        lambda folder: dossier(read_subject(driven(folder, 1))).sentence,
-        ("asurada failed in 1 of 6 runs in which something was due", r"2\.40 h driven"),
+        lambda folder: safety(driven(folder, 1)),
+        (
+            "Safety report: asurada",
+            r"2\.40 h and 84 km",
+            "in 6 of them",
+            "Up to 58 % of such situations",
+            "1 of 6 units did",
+        ),
     ),
     "attribution": (
         lambda _: of_acts(acts()),

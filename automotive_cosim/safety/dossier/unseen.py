@@ -112,12 +112,13 @@ def residual(subject: Subject) -> str:
     bad, total, upper = failing(subject)
     if subject.findings is not None:
         bound = subject.findings["failure_rate_upper"]
-        where = "of the space searched, where something is due"
+        where = "of the space searched, where something is due,"
     else:
-        bound, where = (upper if total else None), f"of such situations ({bad} of {counted(total, 'unit')} did)"
+        bound, where = (upper if total else None), "of such situations"
     if bound is None or bound >= 1:
         return "No bound on failures follows: too little was due."
-    return f"Up to {percent(bound)} {where}, may fail ({CONFIDENCE_WORDS})."
+    did = "" if subject.findings is not None else f"; {bad} of {counted(total, 'unit')} did"
+    return f"Up to {percent(bound)} {where} may fail ({CONFIDENCE_WORDS}){did}."
 
 
 def _rates(subject: Subject) -> Iterator[tuple[str, str, str]]:
