@@ -90,7 +90,7 @@ OTHERS = {
     ("a2a",), ("mcp",), ("serve",), ("measures",), ("report",), ("show", "screens"), ("show", "schema"),
     ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
     ("scenarios", "download"), ("publish", "bundle"), ("publish", "leaderboard"),
-    ("export",),
+    ("export",), ("ci", "init"),
 }  # fmt: skip
 """Commands whose result is a file, or a server."""
 
