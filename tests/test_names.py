@@ -38,8 +38,8 @@ ROOT = Path(__file__).parents[1]
 KEPT = re.compile(r"`[^`]*`|--[\w-]+|\[\[?\w+\]?\]|\b\w*[_./]\w[\w./]*|\$\{[^}]*\}")
 """Names of options, fields and files, which keep theirs, and what a text is filled with."""
 OTHERWISE = {
-    "point": r"percentage points?|points of score|of 100 points|\{\} points|offset points|or points |no point|score,"
-    r"|<point|score of|touch or point|tap a|swipe from|nearest point of the street|the point \{\},\{\} is|POINTS"
+    "point": r"percentage points?|points of score|of 100 points|\{\} points|offset points|or points |no point"
+    r"|score,|<point|score of|touch or point|tap a|swipe from|nearest point of the street|the point \{\},\{\} is|POINTS"
     r"|^point$|^Points$",
     "branch": "A VSS path",
 }

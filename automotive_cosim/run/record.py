@@ -5,6 +5,7 @@ The folder is created when the agent takes over; an earlier failure leaves none.
 
 from __future__ import annotations
 
+import gzip
 import json
 import platform
 from contextlib import suppress
@@ -22,7 +23,15 @@ from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.contracts import KMH_PER_MPS, Json
 from automotive_cosim.episode.session import JudgedSession
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, road_view, screenshot
+from automotive_cosim.formats.layout import (
+    OF_A_TRIAL,
+    PACKED_STEPS,
+    SCREENSHOTS,
+    STEPS,
+    TRIAL,
+    road_view,
+    screenshot,
+)
 from automotive_cosim.formats.writing import (
     add_line,
     check_writable,
@@ -138,6 +147,10 @@ class Recorder(TrialObserver):
         self.lines = self._trial.lines(self._session, row, told, self._thoughts)
         self.judged = self._trial.judged(self._session)
         self.close()
+        if self.folder is not None and self._session.observation.on_watch:
+            steps = self.folder / STEPS
+            write_whole(self.folder / PACKED_STEPS, gzip.compress(steps.read_bytes(), mtime=0))
+            remove(steps)
         if self.has_begun:
             self._write({"row": as_json(row), **self.lines[-1], "manifest": self._manifest()})
 
