@@ -39,8 +39,8 @@ KEPT = re.compile(r"`[^`]*`|--[\w-]+|\[\[?\w+\]?\]|\b\w*[_./]\w[\w./]*|\$\{[^}]*
 """Names of options, fields and files, which keep theirs, and what a text is filled with."""
 OTHERWISE = {
     "point": r"percentage points?|points of score|of 100 points|\{\} points|offset points|or points |no point"
-    r"|score,|<point|score of|touch or point|tap a|swipe from|nearest point of the street|the point \{\},\{\} is|POINTS"
-    r"|^point$|^Points$",
+    r"|score,|<point|score of|touch or point|tap a|swipe from|nearest point of the street|the point \{\},\{\} is"
+    r"|POINTS|^point$|^Points$",
     "branch": "A VSS path",
 }
 """Where a retired word says something else."""
