@@ -45,7 +45,7 @@ case $1 in eval) exit $EVAL;; compare) exit $COMPARE;; esac
 def script(tmp_path, cli, monkeypatch):
     """The script that ``ci init`` writes, as a service would call it, on a copy of the example with one task and
     seed: how it ended, and what it asked the program for, in which folder."""
-    shutil.copytree(EXAMPLES / "my-agent", tmp_path / "checkout")
+    shutil.copytree(EXAMPLES / "my-agent", tmp_path / "checkout", ignore=shutil.ignore_patterns(".github"))
     plan = tmp_path / "checkout/plan.toml"
     whole = plan.read_text(encoding="utf-8")
     one = whole.replace("seeds = [3, 4]", "seeds = [4]").replace(

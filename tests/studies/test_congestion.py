@@ -305,7 +305,7 @@ def test_the_report_is_whole(driven: Path) -> None:
     report(driven)
     page = (driven / "report.html").read_text(encoding="utf-8")
     assert page.index("<h1>“roadworks on main at 9 km/h”") < page.index("The network with each measure")
-    assert "automotive_cosim.studies.load_study(&#34;.&#34;)" in page
+    assert 'automotive_cosim.studies.load_study(".")' in page
     maps = {path.stem for path in (driven / "plots").glob("map_change*.svg")}
     assert maps == {"map_change", "map_change_2", "map_change_3"}, "each measure has its own"
     for name in ("delay", "map", *maps, "mfd", "time_space", "time_space_measure"):
