@@ -109,7 +109,6 @@ class Site:
         """Reads the static files.
 
         Args:
-            folders: what to show.
             game: lets a person play; None if playing is off.
             study: deals episodes to several people; None if there is none.
 
@@ -266,7 +265,6 @@ class Site:
 
     @property
     def _own_game(self) -> Game:
-        """The owner's game."""
         if self._game is None:
             raise NotHereError("playing is off here; start `automotive-cosim serve --play`")
         return self._game
@@ -326,10 +324,8 @@ class WebServer(ThreadingHTTPServer):
         """Binds the address.
 
         Args:
-            folders: what to show.
             game: lets a person play; None if playing is off. The server closes it.
             study: deals episodes to several people. The server closes it.
-            host: address to listen on.
             port: port to listen on; 0 takes a free one.
 
         Raises:

@@ -18,7 +18,7 @@ from automotive_cosim.report.templates import render
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import cannot_write, read_manifest, read_rows
 from automotive_cosim.studies.plan import plan_of
-from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
+from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, RerouteSettings
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -83,6 +83,7 @@ class ShownStudy:
 CONTENTS = {
     RerouteSettings.kind: "reroute.results:Study",
     CongestionSettings.kind: "congestion.results:CongestionStudy",
+    AdoptionSettings.kind: "adoption.adoption:AdoptionStudy",
     DaysSettings.kind: "days.days:DaysStudy",
 }
 """The content of each kind of study, beneath ``automotive_cosim.studies``."""
@@ -92,7 +93,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
     """A study of any kind as a data frame, every line with its seed; of several networks, with the network first.
 
     A line is a choice of a policy at a decision, with news of an age, at a compliance (``reroute``); the traffic
-    without a measure or with one (``congestion``); or a day of a share of advised drivers (``days``).
+    without a measure or with one (``congestion``); cars at a share (``adoption``); or a day of a share of advised drivers (``days``).
 
     Raises:
         UserError: it is not a study's folder, or is damaged.

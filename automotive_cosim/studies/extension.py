@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import typer
 
 from automotive_cosim.run.extensions import ResultsKind
-from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
+from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, RerouteSettings
 
 HOME = "automotive_cosim.studies"
 
@@ -32,5 +32,6 @@ KINDS = {
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
     CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion", "seed"),
+    AdoptionSettings.kind: ResultsKind(f"{HOME}.adoption.page:write_adoption", "seed"),
     DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days", "share of a seed"),
 }
