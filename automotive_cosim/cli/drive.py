@@ -63,7 +63,7 @@ def run_drive(
         agent=player.name,
         model=player.model,
     )
-    folder = out or stamped_folder(f"{name_of(family, scenario)}-{player.name}-seed{seed}")
+    folder = out or stamped_folder(f"{name_of(family, setup.in_scenario)}-{player.name}-seed{seed}")
     check_folder(folder, force=force)
     recorder, road = Recorder(setup, folder, {"out": str(folder)}), RoadRecorder(folder, setup.about)
     with closing(recorder), closing(road):
