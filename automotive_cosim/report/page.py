@@ -104,7 +104,7 @@ def open_picture(path: Path) -> Image.Image:
     try:
         picture = Image.open(path if path.is_file() else "")
     except (OSError, Image.DecompressionBombError) as error:
-        raise UserError(f"{path} is no picture that can be read; record the trial again") from error
+        raise UserError(f"{path} is no picture that can be read; record the run again") from error
     if picture.width * picture.height > bounds.PIXELS:
         picture.close()
         raise UserError(f"{path} has over {bounds.PIXELS:,} pixels; a screen has not")
