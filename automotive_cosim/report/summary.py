@@ -18,9 +18,7 @@ from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.task import Dimension, Module, Subset
 from automotive_cosim.tasking.verdict import PARTS
 
-PAPER = (
-    "Automotive-ENV, arXiv 2509.21143, table 3: success rates in per cent, without intervals or numbers of runs"
-)
+PAPER = "Automotive-ENV, arXiv 2509.21143, table 3: success rates in per cent, without intervals or numbers of runs"
 PAPER_COLUMNS = (
     "Base model",
     "Method",
