@@ -19,7 +19,9 @@ def test_a_manifest_lists_what_was_given_and_no_none() -> None:
     }
     starts = [{"started": "", "platform": "", "git": None, "versions": {}}]
     nothing = dict.fromkeys(("title", "about", "answer"), "") | dict.fromkeys(("warnings", "tables"), ())
-    page = render("studies/network.html", **nothing, plots={}, errors=0, missing=0, plan=plan, starts=starts)
+    page = render(
+        "studies/network.html", **nothing, plots={}, errors=0, missing=0, plan=plan, starts=starts, of="run"
+    )
     told = dict(re.findall("<tr><th>(.*?)</th><td>(.*?)</td></tr>", page))
     assert {name: told.get(name) for name in plan} == {
         "scenario": "grid",
