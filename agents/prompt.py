@@ -101,7 +101,14 @@ def _file(profile: AgentProfile, observation: Observation) -> str:
     return profile.length
 
 
-def situation(profile: AgentProfile, observation: Observation, *, pictures: bool, is_spoken: bool = True) -> str:
+def situation(
+    profile: AgentProfile,
+    observation: Observation,
+    *,
+    pictures: bool,
+    is_spoken: bool = True,
+    is_resulting: bool = True,
+) -> str:
     """The situation alone, for an agent whose protocol carries the rest: the functions and what was called.
 
     Args:
@@ -109,6 +116,7 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
         observation: what it sees.
         pictures: whether the picture comes with it.
         is_spoken: whether it has what the driver said.
+        is_resulting: whether it has the last result; without it, the time that has passed alone.
     """
     given = profile.channels
     is_listed = Channel.ELEMENTS in given
@@ -116,7 +124,8 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
         "caller_now",
         {
             "goal": driver_words(observation) if is_spoken else None,
-            "feedback": _timed_result(observation),
+            "feedback": _timed_result(observation) if is_resulting else None,
+            "passed": None if is_resulting else passed(observation),
             "elements": prompt_parts.told(observation.elements or ()) if is_listed else None,
             "pictures": _pictured(PICTURE, observation) if pictures else None,
             "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,

@@ -20,8 +20,9 @@ from automotive_cosim.drives.acts import acts_of, refusal, spoken
 from automotive_cosim.drives.alarm import Alarm, Noticed, noticed
 from automotive_cosim.drives.changes import FAR_S, LONGEST_S
 from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
-from automotive_cosim.drives.errands import said
+from automotive_cosim.drives.errands import said, thanks
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, Tracker
+from automotive_cosim.drives.events.errands import carried_out
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
@@ -94,6 +95,8 @@ class DriveSession(JudgedSession):
     _given: int = 0
     _asked: int = 0
     """How much of what was asked for the agent has heard."""
+    _thanked: frozenset[float] = frozenset()
+    """When the errands were asked for that somebody has said thanks for."""
 
     @classmethod
     def depart_with(
@@ -187,10 +190,12 @@ class DriveSession(JudgedSession):
         return ANSWERS[self.setup.conditions.language]
 
     def _remarks(self) -> tuple[str, ...]:
-        """What people aboard have asked for since the last observation."""
-        asked = self.moments[-1].asked
+        """What people aboard have asked for since the last observation, and thanks for what is done."""
+        asked, language = self.moments[-1].asked, self.setup.conditions.language
         new, self._asked = asked[self._asked :], len(asked)
-        return tuple(said(errand, self.setup.conditions.language) for errand in new)
+        done = [each for each in asked if each.at_s in carried_out(self.moments) - self._thanked]
+        self._thanked |= {each.at_s for each in done}
+        return (*(said(each, language) for each in new), *(thanks(each, language) for each in done))
 
     def _told(self, code: FeedbackCode, text: str) -> Feedback:
         self.wakes += self._is_woken
