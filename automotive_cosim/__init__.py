@@ -3,7 +3,7 @@
 Importing the package registers four environments with gymnasium: ``AutomotiveCosim/Cockpit-v0`` for tasks,
 ``AutomotiveCosim/Drive-v0`` for drives, and for reinforcement learning ``AutomotiveCosim/Flat-v0`` on tasks and
 ``AutomotiveCosim/FlatDrive-v0`` on drives. The names in ``__all__`` are what most programs need; each is loaded
-when it is first used. ``docs/api.md`` lists everything that is public.
+when it is first used. ``docs/reference/api.md`` lists everything that is public.
 """
 
 from __future__ import annotations

@@ -62,9 +62,10 @@ class UnknownNameError(UserError):
         name: the name that was given.
         known: the names that exist.
         hint: how to list them, e.g. ``"automotive-cosim scenarios list"``.
+        whole: whether all of up to ``LISTED`` are named although one is close.
     """
 
-    def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "", *, whole: bool = False) -> None:
         choices = sorted(known)
         came = name if len(name) <= SHOWN else name[:SHOWN] + "…"
         close = (
@@ -76,6 +77,7 @@ class UnknownNameError(UserError):
         if close:
             *others, last = (f"'{each}'" for each in close)
             fix = f": did you mean {', '.join(others)}{' or ' * bool(others)}{last}?"
+            fix += f" There are: {', '.join(choices)}." if whole and len(choices) <= LISTED else ""
         elif hint and len(choices) > LISTED:
             fix = f" among the {len(choices)}."
         else:

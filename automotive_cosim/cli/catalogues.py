@@ -22,14 +22,19 @@ def apps(as_json: AsJson = False) -> None:
 
 
 def events(as_json: AsJson = False) -> None:
-    """List the kinds of events of drives: what is due, its look-alike, when an alert is right, and the source."""
+    """List all that may happen on drives: kinds of events with what is due, and what can be staged.
+
+    Each kind has its look-alike, when an alert is right, and the source.
+    """
     from automotive_cosim.drives.events import KINDS
+    from automotive_cosim.drives.staging import BRINGS, ON_REQUEST
 
     _tell(
         "events",
         [
             {
                 "id": kind.name,
+                "stage": kind.name if kind.name in ON_REQUEST else "",
                 "about": kind.about,
                 "lookalike": kind.lookalike,
                 "alerts": sorted(kind.alerts),
@@ -40,6 +45,10 @@ def events(as_json: AsJson = False) -> None:
                 "source": kind.source,
             }
             for kind in KINDS.values()
+        ]
+        + [
+            {"id": name, "about": f"staged, brings about {' and '.join(kinds)}", "stage": name}
+            for name, kinds in BRINGS.items()
         ],
         as_json=as_json,
     )

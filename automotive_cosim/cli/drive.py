@@ -148,8 +148,9 @@ def _tell(console: Console, row: DriveTrialRow, timeline: Json) -> None:
     found = row.score
     assert found is not None
     recall = "no events" if found.recall is None else f"{found.met} of {found.events} events met"
+    model = "" if row.model == "none" else f" ({row.model})"
     console.print(
-        f"{row.family}, seed {row.seed}, {row.agent} ({row.model}): score {found.value:.0f}; {recall}, "
+        f"{row.family}, seed {row.seed}, {row.agent}{model}: score {found.value:.0f}; {recall}, "
         f"{found.false_alarms_per_h:.1f} false alarms and {found.nuisances_per_h:.1f} nuisances an hour, "
         f"{row.steps} steps in {found.driven_s / 60:.0f} min",
         soft_wrap=True,

@@ -226,7 +226,9 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
 
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
-    table.add_row("agents", ", ".join(sorted({f"{job.agent} ({job.model})" for job in jobs})))
+    table.add_row(
+        "agents", ", ".join(sorted({f"{job.agent} ({job.model})".removesuffix(" (none)") for job in jobs}))
+    )
     episodes = [job for job in jobs if isinstance(job, EpisodeSetup)]
     if episodes:
         table.add_row("tasks", f"{len({job.task for job in episodes})} (pairs in both halves)")

@@ -16,7 +16,7 @@ from automotive_cosim.errors import UserError, install_hint
 from automotive_cosim.report.settings import PlaybackSettings
 
 if TYPE_CHECKING:
-    from automotive_cosim.run.attribution import ActEffect
+    from automotive_cosim.run.effect import ActEffect
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 
@@ -58,11 +58,11 @@ def _safety(folder: Path, agent: str) -> None:
     page, pdf = write_dossier(folder, subject.agent)
     beside = f" (--agent takes one of the others: {', '.join(subject.others)})" if subject.others else ""
     typer.echo(f"{page} written, about {subject.agent}{beside}; its data in {page.parent / 'data'}")
-    typer.echo(f"{pdf} written" if pdf else f"no PDF: {install_hint('reports')}")
+    typer.echo(f"{pdf} written" if pdf else f"no PDF: it needs the extra safety, {install_hint('safety')}")
 
 
 TrialFolder = Annotated[
-    Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)
+    Path, typer.Argument(help="Results folder of `run`, `drive`, `eval`, `search` or `study`.", show_default=False)
 ]
 TrialId = Annotated[
     str,
@@ -76,13 +76,17 @@ TrialId = Annotated[
 def attribute(folder: TrialFolder, episode: TrialId = "", as_json: AsJson = False) -> None:
     """Measure what each act of a stored trial changed, by leaving it out, and add that to its page.
 
-    Acts that change nothing alone are also left out in pairs.
+    Acts that change nothing alone are also left out in pairs. Of a rerouting study, it tells of each decision.
     """
     from automotive_cosim.formats.layout import PAGE
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.attribution import attribute as measured
+    from automotive_cosim.run.extensions import kind_of
+    from automotive_cosim.run.store import read_manifest
+    from automotive_cosim.run.trial_folder import is_trial
 
-    effects = measured(folder, episode)
+    kind = None if is_trial(folder) else kind_of(read_manifest(folder)["plan"])
+    effects = measured(folder, episode) if kind is None else kind.effects(folder, episode)
     if (folder / PAGE).is_file():
         write_page(folder)
     _tell_effects(effects, as_json=as_json)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,8 +31,9 @@ if TYPE_CHECKING:
     from automotive_cosim.run.plan import Plan
     from automotive_cosim.run.trial_row import TrialRow
     from automotive_cosim.safety.budget import SearchBudget
-    from automotive_cosim.safety.hunt import Hunt
+    from automotive_cosim.safety.hunt import Hunt, MinimalFailure
     from automotive_cosim.safety.space import Space
+    from automotive_cosim.traffic.fork import Simulations
 
 TELL_S = 60.0
 """Wall time without a new point after which the runs are told: a failure is repeated and reduced meanwhile."""
@@ -63,12 +65,14 @@ def search(
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.settings import Budget
     from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
+    from automotive_cosim.safety.due import DueScreen, with_times
     from automotive_cosim.safety.findings import as_json as findings_json
-    from automotive_cosim.safety.hunt import hunt, try_carefully
+    from automotive_cosim.safety.hunt import blame, hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import even_points, make_sampler
     from automotive_cosim.safety.space import read_space, space_file
     from automotive_cosim.safety.trying import check_space, trial_of, trying
+    from automotive_cosim.traffic.fork import Simulations
 
     order, how = filled(SearchOrder, settings), filled(SearchSettings, settings)
     choice = filled(ExecutorSettings, settings)
@@ -84,7 +88,7 @@ def search(
             f"64,{order.budget}"
         )
     distributions()  # without which the findings cannot be told, after all runs
-    space = read_space(file)
+    space = with_times(read_space(file))
     plan = make_plan({"agents": [agent], "models": [model], "trials": [_plain(trial_of(space.nominal))]})
     plan.check()
     check_space(space, plan)
@@ -97,7 +101,7 @@ def search(
         **asdict(how),
     }
     laid, used_s = _before(folder, about, may_use.points or LAID)
-    chooses = make_sampler(how.sampler, space, laid, how.seed)
+    make_sampler(how.sampler, space, laid, how.seed)  # which may need what is not installed
     where = choice.opened()
     is_parallel = choice.executor != EXECUTORS[0] or choice.processes > 1
     for line in _told_before(space, plan, may_use, how.failures, choice.processes if is_parallel else 1, folder):
@@ -123,7 +127,11 @@ def search(
         told = progress_in_words(may_use, found.run, now_s, each_s)
         console.print(f"{told}; {margin}; {counted(len(found.minimal), 'minimal failure')}", soft_wrap=True)
 
-    with where, trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s) as run:
+    with (
+        closing(Simulations(count_limit=2)) as simulations,
+        where,
+        trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s) as run,
+    ):
 
         def note(row: TrialRow | None = None) -> None:
             nonlocal said_s
@@ -135,14 +143,21 @@ def search(
 
         note()
         run.tell = note
+        screen = DueScreen(space, plan, simulations, folder)
+        for line in screen.check(how.seed):
+            console.print(line, markup=False, soft_wrap=True)
+        run.space = space = screen.space
+        chooses = make_sampler(how.sampler, space, laid, how.seed)
         if is_parallel and not run(space.nominal, 0).error:
             try:
-                run.ahead(
-                    even_points(make_sampler(how.sampler, space, laid, how.seed), min(laid, may_use.most_points))
+                ahead = even_points(
+                    make_sampler(how.sampler, space, laid, how.seed), min(laid, may_use.most_points)
                 )
+                run.ahead(filter(screen.is_due, ahead))
             except KeyboardInterrupt:
                 run.stop = "interrupted"
-        found = hunt(space, run, chooses, may_use.most_points, most_failures=how.failures, tell=tell)
+        most = may_use.most_points
+        found = hunt(space, run, chooses, most, most_failures=how.failures, is_due=screen.is_due, tell=tell)
         found.interrupted |= bool(run.stop)
         if found.minimal and agent not in CAREFUL and not found.interrupted:
             careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})
@@ -151,6 +166,8 @@ def search(
                     try_carefully(found, watcher)
             except KeyboardInterrupt:
                 found.interrupted = True
+        if not found.interrupted:
+            blame(found, lambda failure: _act(folder, failure, space, simulations))
         note()
         page = write_findings(folder, found, agent, model, about)
     if order.save is not None and (found.minimal or found.not_reduced):
@@ -168,6 +185,17 @@ def search(
         raise typer.Exit(1)
 
 
+def _act(folder: Path, failure: MinimalFailure, space: Space, simulations: Simulations) -> str:
+    """The act, or the missing act, that made a failure."""
+    from automotive_cosim.errors import CosimError
+    from automotive_cosim.run.attribution import attribute, culprit
+
+    try:
+        return culprit(attribute(folder, failure.trial, simulations=simulations), space.rule.events)
+    except CosimError as error:
+        return f"not known: {error}"
+
+
 def too_many(found: Hunt, at_most: int) -> str:
     """Why a search is not passed if so many samples may fail; empty if it is."""
     from automotive_cosim.safety.findings import judged
@@ -177,8 +205,12 @@ def too_many(found: Hunt, at_most: int) -> str:
     if any(not each.changed for each in found.minimal):
         return "it fails with everything nominal"
     if not samples:
-        return "nothing was due in any sample, so that nothing is known"
-    return f"{failed} of {counted(len(samples), 'sample')} failed, more than {at_most}" if failed > at_most else ""
+        return "nothing was due in any trial, so that nothing is known"
+    return (
+        f"{failed} of {counted(len(samples), 'trial')} in which something was due failed, more than {at_most}"
+        if failed > at_most
+        else ""
+    )
 
 
 def _tell_found(console: Output, found: Hunt, agent: str, page: Path) -> None:
@@ -191,9 +223,8 @@ def _tell_found(console: Output, found: Hunt, agent: str, page: Path) -> None:
         console.print(f"Stopped: {found.stopped}; rerun with a larger --budget to go on.", soft_wrap=True)
     for count, each in enumerate(found.minimal, 1):
         near = f"; {each.beside}" if each.beside else ""
-        console.print(
-            f"{count}. fails with {each.words(found.space)}{near} [{each.why}]", markup=False, soft_wrap=True
-        )
+        told = f"{count}. fails with {each.words(found.space)}{near} [{each.why}]"
+        console.print(f"{told}: {each.act}" if each.act else told, markup=False, soft_wrap=True)
     console.print(f"Report: {page}", soft_wrap=True)
 
 
@@ -205,8 +236,6 @@ def _told_before(
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.safety.forecast import RUNS_A_FAILURE, of_a_failure, search_forecast
 
-    if space.note:
-        yield space.note
     if may_use.hours is not None:
         minutes = counted(round(60 * may_use.hours), "minute")
         yield f"{minutes} at most, with earlier starts: no run begins after that"

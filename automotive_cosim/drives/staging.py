@@ -402,6 +402,13 @@ ON_REQUEST: Mapping[str, Staging] = {
     "left_sign": _ahead("left_sign"),
 }
 """What the settings of a drive can stage; families draw from ``STAGINGS`` alone."""
+BRINGS: Mapping[str, tuple[str, ...]] = {
+    "cut_in": ("leader_close", "leader_brakes"),
+    "cut_out": ("breakdown", "leader_brakes"),
+    "leader_stops": ("leader_brakes", "leader_close"),
+    "left_sign": ("limit_falls", "over_limit"),
+}
+"""The kinds of events that those stagings bring about which have no kind's name."""
 SCHOOL_ZONE = "school_zone"
 """The kind that is staged by place: where a school zone begins at its hours."""
 AT_SCHOOLS = ("hurried", "brisk")

@@ -34,7 +34,7 @@ from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.formats.writing import copy
 from automotive_cosim.run.road import Second
 
-NEEDS = f"OSI traces need the extra osi: {install_hint('safety')}"
+NEEDS = f"OSI traces need the extra safety: {install_hint('safety')}"
 AROUND_M = 200.0
 """Lanes and traffic lights within this distance of the car are in a message: our choice, as each repeats them."""
 SHARPEST = 0.25

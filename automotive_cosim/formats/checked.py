@@ -198,5 +198,5 @@ def _line(problem: _Problem, together: Sequence[_Problem], root: Json, place: Lo
     legal = [choice for schema in schemas for choice in choices(schema) if isinstance(choice, str)]
     if isinstance(value, str) and legal and (all(map(choices, schemas)) or get_close_matches(value, legal, 1, 0.5)):
         what = next((schema["title"] for schema in schemas if "title" in schema), field)
-        return f"{where}: {UnknownNameError(what, value, legal)}"
+        return f"{where}: {UnknownNameError(what, value, legal, whole=True)}"
     return f"{where}{f': {name}' if name else ''} is {shown(value)}; it must be {expected(schemas, root)}"

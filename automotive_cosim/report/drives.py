@@ -59,11 +59,13 @@ def standings(rows: Iterable[DriveTrialRow]) -> list[str]:
     groups = grouped(rows)
     for each, mine in groups.items():
         total = whole(mine)
+        due = sum(not row.has_nothing_due for row in mine)
+        of_due = f", something due in {due}" if due < len(mine) else ""
         recall = "no events" if total.recall is None else f"{total.recall:.0%} of {total.events} events met"
         lines.append(
             f"{each.label}: score {told(mine, value_of, '.0f')}; {recall}, "
             f"{total.false_alarms_per_h:.1f} false alarms and {total.nuisances_per_h:.1f} nuisances an hour, "
-            f"{counted(len(mine), 'drive')}{_left_alone(mine)}"
+            f"{counted(len(mine), 'drive')}{of_due}{_left_alone(mine)}"
         )
     if len({whole(mine).events for mine in groups.values()}) > 1:
         lines.append(DIVERGE)

@@ -13,11 +13,14 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import resolve_name
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+
+if TYPE_CHECKING:
+    from automotive_cosim.run.effect import ActEffect
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +29,8 @@ class ResultsKind:
 
     page: str
     """Of the folder; writes the report into it and returns ``report.html``."""
+    attributed: str = ""
+    """Of the folder and the beginning of an item's id; what the acts in it changed."""
     served: Mapping[str, str] = field(default_factory=dict)
     """What the pages of ``serve`` ask, by the last part of its address; each of the folder, and of the item."""
 
@@ -38,6 +43,17 @@ class ResultsKind:
         """
         page: Path = resolve_name(self.page)(folder)
         return page
+
+    def effects(self, folder: Path, item: str) -> list[ActEffect]:
+        """What the acts of items changed.
+
+        Raises:
+            UserError: this kind has no acts, or no such item, or cannot be read.
+        """
+        if not self.attributed:
+            raise UserError(f"{folder} has no acts whose effect could be measured; give a folder with trials")
+        found: list[ActEffect] = resolve_name(self.attributed)(folder, item)
+        return found
 
     def shown(self, part: str, folder: Path, *items: str) -> Json | None:
         """What a page of ``serve`` shows of the folder; None if there is no such part.

@@ -1,7 +1,7 @@
 """Runs jobs in actors of a Ray cluster, each with its own CPU; the only module that imports Ray.
 
 No shared file system is needed: an actor runs a job in its own folder and sends back the row and the files, which
-the driver writes. docs/cluster.md says what has to be installed where.
+the driver writes. docs/reference/cluster.md says what has to be installed where.
 """
 
 from __future__ import annotations

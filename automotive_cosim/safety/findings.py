@@ -121,6 +121,7 @@ def _failures(found: Hunt) -> Table:
                 str(number),
                 each.words(found.space),
                 each.why,
+                each.act or "not measured",
                 each.beside or "no neighbour found",
                 careful,
                 str(count),
@@ -129,13 +130,21 @@ def _failures(found: Hunt) -> Table:
     return Table(
         "failures",
         "Minimal failures",
-        ("No.", "Fails with", "What is missing", "Beside it", "A careful watcher", "Samples it explains"),
+        (
+            "No.",
+            "Fails with",
+            "What is missing",
+            "Act, or missing act",
+            "Beside it",
+            "A careful watcher",
+            "Samples it explains",
+        ),
         tuple(lines),
         f"Each failed {REPEATS} times of {REPEATS}, and what is beside it did not. Factors that "
         "are not named are nominal; numbers are bisected. "
         "The careful watcher is the reference: rule-perfect on drives, oracle on tasks. failures/NN.toml replays "
         "the failure and what is beside it, the nearest point that does not fail: automotive-cosim eval --plan.",
-        heads=5,
+        heads=6,
     )
 
 
@@ -153,6 +162,7 @@ def _unseen(found: Hunt) -> Table:
         (
             ("Points sampled in which something was due", str(len(samples))),
             ("Points sampled in which nothing was due", str(len(nothing_due(found.samples)))),
+            ("Points passed over, as nothing came due without an agent", str(found.passed_over)),
             ("Runs in total, with repeats and reductions", str(len(found.tried))),
             ("Points that represent the whole space, something due", str(bound.even)),
             ("Failures among them", str(bound.failed)),
@@ -383,22 +393,26 @@ def sentence(found: Hunt, agent: str) -> str:
     """What was found, in a sentence or two."""
     samples, bound = judged(found.samples), unseen(found)
     failed, empty = sum(each.outcome.failed for each in samples), len(nothing_due(found.samples))
-    if empty and not samples:
-        return f"Nothing was due in {_all_of(empty)}, so that nothing is known about {agent}."
-    if not failed:
-        told_first = f"{agent} failed in none of {counted(len(samples), 'sample')}"
-    else:
-        causes = f", from {counted(len(found.minimal), 'minimal failure')}" if found.minimal else ", none reduced"
-        told_first = f"{agent} failed in {failed} of {counted(len(samples), 'sample')}{causes}"
-    told_first += f"; in {empty} more nothing was due." if empty else "."
+    told_first = of_due(f"{agent} failed in", failed, len(samples), empty)
+    if failed:
+        told_first += (
+            f" From {counted(len(found.minimal), 'minimal failure')}." if found.minimal else " None reduced."
+        )
+    if any(not each.changed for each in found.minimal):
+        told_first = f"{agent} fails with everything nominal. Beside that, {told_first}"
     if bound.upper is None:
         return told_first
     where = "Where something is due in this space, the failure rate" if empty else "The failure rate in this space"
     return f"{told_first} {where} is at most {percent(bound.upper)} ({CONFIDENCE_WORDS})."
 
 
-def _all_of(samples: int) -> str:
-    return "the only sample" if samples == 1 else f"all {samples:,} samples"
+def of_due(what: str, failed: int, due: int, empty: int) -> str:
+    """How many failed, of the trials in which something was due, which is what every count of failures is of."""
+    if not due:
+        trials = "the only trial" if empty == 1 else f"any of {counted(empty, 'trial')}"
+        return f"Nothing was due in {trials}, so that nothing is known."
+    told = f"{what} {failed or 'none'} of {counted(due, 'trial')} in which something was due"
+    return f"{told}; in {empty} more nothing was due." if empty else f"{told}."
 
 
 def as_json(found: Hunt) -> Json:
@@ -411,6 +425,7 @@ def as_json(found: Hunt) -> Json:
         "failed": sum(each.outcome.failed for each in samples),
         "runs": len(found.tried),
         "nothing_due": len(nothing_due(found.samples)),
+        "passed_over": found.passed_over,
         "not_judged": len(found.tried) - len(judged(found.tried)) - len(nothing_due(found.tried)),
         "failure_rate_upper": bound.upper,
         "unseen_rate_upper": bound.unseen_upper,
@@ -426,6 +441,7 @@ def as_json(found: Hunt) -> Json:
             {
                 "words": each.words(found.space),
                 "why": each.why,
+                "act": each.act,
                 "point": dict(each.point),
                 "neighbour": None if each.neighbour is None else dict(each.neighbour),
                 "differs": each.differs,

@@ -9,7 +9,7 @@ from typing import Any
 
 from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.safety.objective import TriedOutcome
-from automotive_cosim.safety.samplers import Sampler
+from automotive_cosim.safety.samplers import UNTOLD, Sampler
 from automotive_cosim.safety.space import FactorRange, FactorValue, PointKey, SearchPoint, Space, key_of, said
 
 REPEATS = 3
@@ -21,9 +21,8 @@ MOST_STALE = 1000
 """Points in a row that were all known, after which a space of few points is taken to be used up."""
 MOST_BESIDE = 3
 """Points that passed of which a neighbour of a failing nominal point is made."""
-UNTOLD = 2.0
-"""What a sampler is told of a point without a margin: further from failing than any pass, so that it is drawn
-elsewhere. A trial in which nothing was due is no success."""
+MOST_PASSED = 8
+"""Points in a row that are passed over because nothing comes due there, after which the next is run anyway."""
 MOST_ASKED = 20
 """Points that a sampler is asked for at most, for each that is run."""
 
@@ -73,6 +72,8 @@ class MinimalFailure:
     """Whether the neighbour passes; otherwise nothing is due there."""
     prevented: bool | None = None
     """Whether a careful watcher does not fail there; None if it was not tried or judged."""
+    act: str = ""
+    """The act, or the missing act, that made it fail, in words; empty while it was not measured."""
 
     def covers(self, space: Space, point: SearchPoint) -> bool:
         """Whether a point has all that this failure needs, and perhaps more of it."""
@@ -120,6 +121,8 @@ class Hunt:
     """Failures that passed when repeated."""
     not_reduced: list[Tried] = field(default_factory=list)
     """Failures beyond the number that are reduced."""
+    passed_over: int = 0
+    """Points at which nothing came due with nobody at the cockpit, and which no agent was given."""
     stopped: str = ""
     """Why it ended before its budget; empty if it did not."""
     interrupted: bool = False
@@ -143,6 +146,7 @@ def hunt(
     budget: int,
     *,
     most_failures: int = 5,
+    is_due: Callable[[SearchPoint], bool] = lambda point: True,
     tell: Callable[[Hunt], None] = lambda found: None,
 ) -> Hunt:
     """Searches a space.
@@ -154,6 +158,8 @@ def hunt(
         budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
             reductions come in addition: about thirty runs a failure.
         most_failures: how many failures are reduced; those that one of them explains are not.
+        is_due: whether something comes due at a point, as far as that is known without the agent; others are
+            passed over.
         tell: called after each point.
 
     Returns:
@@ -169,7 +175,7 @@ def hunt(
     nominal = run(Phase.NOMINAL, space.nominal).outcome
     if not nominal.held and not nominal.failed:
         raise UserError(f"the nominal point is not judged ({nominal.error}); give another, the first of each list")
-    stale, at_once = 0, [found.tried[0]] if nominal.failed else []
+    passed, stale, at_once = 0, 0, [found.tried[0]] if nominal.failed else []
     for _ in range(MOST_ASKED * budget):
         if found.run >= budget:
             break
@@ -181,6 +187,11 @@ def hunt(
         try:
             while at_once:
                 _reduce(run, at_once.pop(), most_failures)
+            if run.is_new(point) and passed < MOST_PASSED and not is_due(point):
+                passed, found.passed_over = passed + 1, found.passed_over + 1
+                sampler.tell(point, UNTOLD)
+                continue
+            passed = 0
             tried = run(Phase.SAMPLE, point, even=even)
             margin = tried.outcome.margin
             sampler.tell(point, UNTOLD if margin is None else margin)
@@ -212,6 +223,12 @@ def try_carefully(found: Hunt, careful: Evaluate) -> None:
     for number, each in enumerate(found.minimal):
         outcome = careful(each.point, 0)
         found.minimal[number] = replace(each, prevented=outcome.held if outcome.failed or outcome.held else None)
+
+
+def blame(found: Hunt, act_of: Callable[[MinimalFailure], str]) -> None:
+    """Notes which act, or missing act, made each minimal failure; the search is changed in place."""
+    for number, each in enumerate(found.minimal):
+        found.minimal[number] = replace(each, act=act_of(each))
 
 
 class _Runner:

@@ -98,7 +98,7 @@ def _page(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> str
         "safety/search.html",
         agent=agent,
         model=model,
-        about=about,
+        about={name: value for name, value in about.items() if name != "model" or agent in MODELLED},
         found=found,
         sentence=sentence(found, agent),
         failures=len(found.minimal),

@@ -21,6 +21,13 @@ STEP = 0.15
 """Standard deviation of a step of ``climb``, as a share of the range."""
 
 
+UNTOLD = 2.0
+"""What a sampler is told of a point without a margin: further from failing than any pass, so that it is drawn
+elsewhere. A trial in which nothing was due is no success."""
+MOST_RELAID = 4
+"""Times the points of an even design that are tried to find as many at which something is due."""
+
+
 class Sampler(Protocol):
     """Proposes points."""
 
@@ -76,6 +83,7 @@ class EvenSampler:
             laid = qmc.Sobol(space.dimensions, rng=rng).random_base2(max(1, ceil(log2(budget))))
         self._space, self._rng = space, rng
         self._laid = [space.at(units.tolist()) for units in laid[:budget]]
+        self.laid = budget
         self._next = 0
 
     def ask(self) -> tuple[SearchPoint, bool]:
@@ -149,7 +157,8 @@ class ClimbSampler:
         return self._space.at(self._rng.random(self._space.dimensions).tolist()), False
 
     def tell(self, point: SearchPoint, margin: float) -> None:
-        """Notes the margin."""
+        """Notes the margin; instead of an even point at which nothing was due, another one is laid."""
+        self._left += self._left >= 0 and margin >= UNTOLD and len(self._known) < MOST_RELAID * self._even.laid
         self._known[key_of(point)] = margin, point
 
     def _step(self, point: SearchPoint) -> SearchPoint:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from math import exp, isfinite, log
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,6 +13,7 @@ from annotated_types import Ge, Le
 from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.settings import DriveSettings
+from automotive_cosim.drives.staging import BRINGS
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
@@ -29,6 +30,8 @@ SETTINGS = tuple(entry.name for entry in fields(DriveSettings))
 TRIAL = ("task", "half", "drive", "scenario", "seed", "held_out")
 FACTORS = (*TRIAL, *CONDITIONS, *SETTINGS)
 """Every factor that a space may have."""
+NAMES = tuple(dict.fromkeys((*KINDS, *BRINGS)))
+"""Of all that may happen on a drive: kinds of events, and stagings that bring about several."""
 LIBRARY = {file.stem: file for file in sorted((Path(__file__).parent / "spaces").glob("*.toml"))}
 """The named logical scenarios that are shipped, by name."""
 BINS = 4
@@ -166,8 +169,6 @@ class Space:
     """The kind of event, or words of what the road tells, that shows that it has happened."""
     sources: tuple[str, ...] = ()
     """Where the situation and its figures come from; the rest of the ranges is our choice."""
-    note: str = ""
-    """What to know before it is searched."""
 
     @property
     def nominal(self) -> SearchPoint:
@@ -216,7 +217,6 @@ class _SpaceTable:
     about: str = ""
     occurs: str = ""
     sources: tuple[str, ...] = ()
-    note: str = ""
 
 
 def space_file(name: str) -> Path:
@@ -227,11 +227,11 @@ def space_file(name: str) -> Path:
     """
     if Path(name).is_file():
         return Path(name)
-    if name in LIBRARY:
-        return LIBRARY[name]
+    if (known := name.replace("_", "-")) in LIBRARY:
+        return LIBRARY[known]
     if name.endswith(".toml"):
         raise UserError(f"there is no file {name}")
-    raise UnknownNameError("space", name, LIBRARY)
+    raise UnknownNameError("space", name, LIBRARY, whole=True)
 
 
 def read_space(path: Path) -> Space:
@@ -252,13 +252,13 @@ def read_space(path: Path) -> Space:
     if misplaced:
         of = "drives" if "task" in names else "tasks"
         raise UserError(f"{path}: {', '.join(misplaced)} can be varied for {of} alone; remove it")
-    for kind in table.failure.events:
-        if kind not in KINDS:
-            raise UserError(
-                f"{document.refused(('failure', 'events'), 'has an unknown kind')}: "
-                f"{UnknownNameError('kind of event', kind, KINDS, 'automotive-cosim show events')}"
-            )
-    return Space(made, table.failure, table.about, table.occurs, table.sources, table.note)
+    for name in table.failure.events:
+        if name not in NAMES:
+            unknown = UnknownNameError("event or staging", name, NAMES, "automotive-cosim show events", whole=True)
+            raise UserError(f"{document.refused(('failure', 'events'), 'has an unknown kind')}: {unknown}")
+    kinds = dict.fromkeys(kind for name in table.failure.events for kind in BRINGS.get(name, (name,)))
+    rule = replace(table.failure, events=tuple(kinds))
+    return Space(made, rule, table.about, table.occurs, table.sources)
 
 
 def _factor(document: Document, name: str, given: Any) -> Factor:

@@ -17,9 +17,10 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED, PictureOf, road_view, screenshot
 from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.report.page import PARTS
-from automotive_cosim.run.attribution import ActEffect, path_of, read_effects
+from automotive_cosim.run.attribution import path_of, read_effects
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.effect import ActEffect
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.extensions import kind_of
 from automotive_cosim.run.road import FORMAT, read_road

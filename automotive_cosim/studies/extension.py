@@ -27,6 +27,7 @@ def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
 KINDS = {
     RerouteSettings.kind: ResultsKind(
         f"{HOME}.reroute.page:write_study",
+        f"{HOME}.reroute.decisions:attributed",
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
     CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion"),

@@ -1,4 +1,4 @@
-"""docs/api.md lists exactly what is public, and all of it is there, documented and typed."""
+"""docs/reference/api.md lists exactly what is public, and all of it is there, documented and typed."""
 
 import ast
 import importlib
@@ -12,7 +12,7 @@ import automotive_cosim
 from tests.laws import over
 
 TOP = Path(__file__).parents[2]
-PAGE = (TOP / "docs/api.md").read_text(encoding="utf-8")
+PAGE = (TOP / "docs/reference/api.md").read_text(encoding="utf-8")
 DIRECTIVE = re.compile(r"^\.\. auto(class|function|module):: (\S+)$", re.MULTILINE)
 LISTED = {name: kind for kind, name in DIRECTIVE.findall(PAGE)}
 MODULES = sorted(name for name, kind in LISTED.items() if kind == "module")

@@ -12,17 +12,9 @@ import pytest
 from automotive_cosim.contracts import Action, ActionType, GoalStatus
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.page import write_page
-from automotive_cosim.run.attribution import (
-    FILE,
-    REDRAWS,
-    ActEffect,
-    Forks,
-    _together,
-    attribute,
-    forked,
-    path_of,
-    read_effects,
-)
+from automotive_cosim.run.attribution import FILE, REDRAWS, attribute, path_of, read_effects
+from automotive_cosim.run.effect import ActEffect
+from automotive_cosim.run.forks import Forks, forked, together
 from automotive_cosim.run.rerun import recorded
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.traffic.fork import Simulations
@@ -50,8 +42,8 @@ def forks(folder: Path, simulations: Simulations) -> Iterator[Forks]:
 
 
 def driven(forks: Forks, steps: Sequence[int]) -> list[Any]:
-    run = forks._driving(forks._forks[0], frozenset(steps), 0, forks.moments[-1].time_s)
-    (moments,) = _together([run])
+    run = forks.driving(forks._forks[0], frozenset(steps), 0, forks.moments[-1].time_s)
+    (moments,) = together([run])
     return moments
 
 
@@ -63,8 +55,8 @@ def told(moments: Sequence[Any]) -> list[Any]:
 def test_with_all_acts_it_is_the_trial_and_without_any_the_do_nothing_run(forks: Forks) -> None:
     assert told(driven(forks, [])) == told(forks.moments)
     alone = driven(forks, [act.step for act in forks.acts])
-    count = len(forks._untouched)
-    assert told(alone[:count]) == told(forks._untouched)
+    count = len(forks.untouched)
+    assert told(alone[:count]) == told(forks.untouched)
     assert told(alone) != told(forks.moments)
 
 
@@ -117,7 +109,7 @@ def test_a_failure_for_want_of_an_act_is_told_as_that(folder: Path, simulations:
 def test_acts_that_are_too_many_are_counted(
     folder: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("automotive_cosim.run.attribution.MOST_ACTS", 1)
+    monkeypatch.setattr("automotive_cosim.run.forks.MOST_ACTS", 1)
     one, later = attribute(folder, simulations=simulations)
     assert one.steps == (2,)
     assert later.effect == "not measured: 1"

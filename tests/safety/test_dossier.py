@@ -11,19 +11,22 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.harm import Harm
 from automotive_cosim.drives.judge import EventOutcome, JudgedEvent
 from automotive_cosim.drives.score import together
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.layout import STEPS, TRIAL
 from automotive_cosim.measures import ExposureCell, FollowingFigures
 from automotive_cosim.report.stats import rate_upper_bound
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.store import opened
 from automotive_cosim.safety.dossier.claims import claims
 from automotive_cosim.safety.dossier.document import dossier
 from automotive_cosim.safety.dossier.filing import write_dossier
-from automotive_cosim.safety.dossier.subject import failing, read_subject
+from automotive_cosim.safety.dossier.subject import Subject, failing, read_subject
 from automotive_cosim.safety.dossier.unseen import missing_mass
 from automotive_cosim.safety.space import FailureRule
 
@@ -70,16 +73,21 @@ def table(folder: Path, name: str) -> list[dict[str, str]]:
     return list(csv.DictReader((folder / "safety/data" / f"{name}.csv").read_text("utf-8").splitlines()))
 
 
+def shown(subject: Subject) -> str:
+    (summary,) = [section for section in dossier(subject).sections if section.name == "summary"]
+    return summary.told[0]
+
+
 @pytest.mark.slow
 def test_figures_are_those_of_the_rows(tmp_path: Path) -> None:
     page, pdf = write_dossier(run(tmp_path / "runs", missed=2))
     folder = tmp_path / "runs"
     domain = {(row["Attribute"], row["Value"]): row for row in table(folder, "domain")}
     assert domain["Place", "grid"]["Trials"] == "6"
-    assert domain["Place", "tokyo"]["Trials"] == "none"
+    assert [row["Value"] for row in table(folder, "domain") if row["Trials"] == "none" and row["Attribute"] in
+            ("Place", "Language", "Weather")] == ["rain, snow or ice"]  # fmt: skip
     assert domain["Road", "primary"]["Hours"] == "2.40"
     assert domain["Weather", "fog"]["Kilometres"] == "12.0"
-    assert domain["Language", "Japanese"]["Trials"] == "none"
     events = {row["Kind"]: row for row in table(folder, "events")}
     assert (events["tunnel"]["Due"], events["tunnel"]["Missed"]) == ("6", "2")
     assert events["tunnel"]["Met % (interval)"].startswith("67 (")
@@ -122,7 +130,12 @@ def test_drives_with_nothing_due_neither_pass_nor_fail(tmp_path: Path) -> None:
     subject = replace(subject, rows=rows)
     assert (len(subject.passed), len(subject.failed), len(subject.nothing_due)) == (0, 1, 5)
     assert failing(subject)[:2] == (1, 1)
-    assert dossier(subject).sentence.endswith("In 5 of the trials nothing was due.")
+    told = [paragraph for section in dossier(subject).sections for paragraph in section.told]
+    assert (
+        "asurada failed in 1 of 1 trial in which something was due; in 5 more nothing was due (2.40 h driven)."
+        in told
+    )
+    assert "something was due in 1 of them" in dossier(subject).sentence
     nothing = replace(subject, rows=tuple(row for row in rows if not row.missing))
     assert failing(nothing) == (0, 0, 1.0)
     assert claims(nothing).status == "limited"
@@ -138,7 +151,7 @@ def test_a_search_counts_the_kinds_of_its_space_alone(tmp_path: Path) -> None:
     )
     assert [len(each) for each in (other.failed, other.failed_beside, other.passed)] == [0, 2, 6]
     assert [len(each) for each in (same.failed, same.failed_beside, same.passed)] == [2, 0, 4]
-    assert "nuisances than right acts, of: over limit. Of the others, 2 failed in what" in dossier(other).sentence
+    assert "nuisances than right acts, of: over limit. Of the others, 2 failed in what" in shown(other)
     tables = {table.name: table for section in dossier(other).sections for table in section.tables}
     assert [row[0] for row in tables["events"].rows] == ["over_limit"]
     assert {row[0] for row in tables["events_beside"].rows} == {"tunnel", "blue_light"}
@@ -155,7 +168,9 @@ def test_a_search_counts_its_samples_and_no_rates_that_no_row_explains(tmp_path:
     rule = asdict(FailureRule(events=("tunnel",)))
     search = replace(subject, findings=findings | {"rule": rule, "sampled_trials": sampled})
     made = dossier(search)
-    assert made.sentence.startswith("1 of 5 judged trials failed (2.00 h driven). 1 more run repeated")
+    assert shown(search).startswith(
+        "asurada failed in 1 of 5 trials in which something was due (2.00 h driven). 1 more run repeated"
+    )
     tables = {table.name: table for section in made.sections for table in section.tables}
     assert {row[1] for row in tables["events"].rows} == {"5"}
     assert len(tables["failures"].rows) == len(tables["faults"].rows) == 1
@@ -166,6 +181,35 @@ def test_a_search_counts_its_samples_and_no_rates_that_no_row_explains(tmp_path:
               if table.name == "unseen" and str(row[0]).startswith("Nuisances")]  # fmt: skip
     bound = quiet.evidence.partition("at most ")[2].removesuffix(" an hour.")
     assert f"at most {bound}" in str(row[1])
+
+
+@pytest.mark.parametrize("trials", [1, 4, 5, 6])
+def test_few_trials_leave_a_claim_limited_and_the_report_leads_with_what_is_open(
+    tmp_path: Path, trials: int
+) -> None:
+    subject = read_subject(run(tmp_path / "runs", 0))
+    made = replace(subject, rows=subject.rows[:trials])
+    assert claims(made).parts[0].status == ("supported" if trials >= 5 else "limited")
+    first = dossier(made).sections[0]
+    assert first.title == "What was not shown"
+    driven, never, residual = first.told
+    assert driven == f"{0.4 * trials:.2f} h and {14 * trials} km were driven in {counted(trials, 'trial')}; " + (
+        f"something was due in {trials} of them."
+    )
+    assert "weather rain, snow or ice;" in never
+    assert residual.startswith("Up to ")
+
+
+def test_a_drive_alone_has_a_report(tmp_path: Path) -> None:
+    row = read_subject(run(tmp_path / "runs", 1)).rows[0]
+    alone = tmp_path / "alone"
+    alone.mkdir()
+    (alone / STEPS).write_text("")
+    (alone / TRIAL).write_text(json.dumps({"row": as_json(row)}))
+    subject = read_subject(alone)
+    assert [each.id for each in subject.failed] == [row.id]
+    page, _ = write_dossier(alone)
+    assert "of 1 trial in which something was due" in page.read_text("utf-8")
 
 
 def test_an_agent_must_be_named_if_there_are_several(tmp_path: Path) -> None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.drive import DriveSetup
@@ -63,21 +61,3 @@ def test_the_guides_first_search_is_of_events_that_its_staging_makes_due() -> No
     file = Path(automotive_cosim.safety.__file__).parent / "spaces" / f"{name}.toml"
     space = tomllib.loads(file.read_text("utf-8"))
     assert space["factors"]["stage"] in space["failure"]["events"]
-
-
-def test_a_space_in_which_little_is_due_says_so_before_it_starts(tmp_path: Path) -> None:
-    options = (
-        "--space",
-        "cut-in",
-        "--agent",
-        "silent",
-        "--budget",
-        "4",
-        "--out",
-        str(tmp_path / "cut"),
-        "--dry-run",
-    )
-    told = CliRunner().invoke(app, ["search", *options])
-    assert told.exit_code == 0, told.output
-    assert "In most points nothing is due here" in told.output.splitlines()[0]
-    assert "begin with roadworks" in told.output

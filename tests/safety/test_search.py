@@ -11,8 +11,10 @@ import pytest
 from numpy.random import default_rng
 
 from automotive_cosim.cli.search import too_many
+from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.drives.score import together
+from automotive_cosim.drives.staging import BRINGS, ON_REQUEST
 from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.report.stats import upper_bound
 from automotive_cosim.run.budget import Meter, Spent
@@ -22,7 +24,7 @@ from automotive_cosim.run.settings import Budget
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit, progress_in_words
 from automotive_cosim.safety.curves import curves, means
 from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, sentence, tables, unseen
-from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_carefully
+from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, blame, hunt, try_carefully
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.page import suite
 from automotive_cosim.safety.samplers import SAMPLERS, RandomSampler, even_points, make_sampler
@@ -36,6 +38,7 @@ from automotive_cosim.safety.space import (
     label_of,
     read_space,
     said,
+    space_file,
 )
 
 SPACE = Space(
@@ -107,7 +110,10 @@ def test_a_search_passes_with_as_many_failures_as_are_allowed() -> None:
     failed = as_json(found)["failed"]
     assert failed > 0
     assert too_many(found, failed) == ""
-    assert too_many(found, failed - 1) == f"{failed} of 64 samples failed, more than {failed - 1}"
+    assert (
+        too_many(found, failed - 1)
+        == f"{failed} of 64 trials in which something was due failed, more than {failed - 1}"
+    )
 
 
 def test_nothing_is_found_where_nothing_fails() -> None:
@@ -157,6 +163,7 @@ def test_a_nominal_point_that_fails_is_a_finding_with_what_passes_beside_it() ->
     assert minimal.beside in ("passes with driver calm", "passes with driver hurried")
     assert all(minimal.covers(SPACE, each.point) for each in found.samples if each.outcome.failed)
     assert too_many(found, 64) == "it fails with everything nominal"
+    assert sentence(found, "me").startswith("me fails with everything nominal. Beside that, me failed in ")
     (alone,) = searched(of=lambda point: -1.0).minimal
     assert (alone.neighbour, alone.beside) == (None, "")
     with pytest.raises(UserError, match="the nominal point is not judged"):
@@ -208,8 +215,49 @@ def test_where_nothing_is_ever_due_nothing_is_known() -> None:
     found = hunt(SPACE, evaluate, Listener(SPACE, 9, default_rng(0)), 9)
     assert min(told) > 1, "further from failing than any pass"
     assert (as_json(found)["samples"], unseen(found).upper) == (0, None)
-    assert sentence(found, "me") == "Nothing was due in all 9 samples, so that nothing is known about me."
-    assert too_many(found, 9) == "nothing was due in any sample, so that nothing is known"
+    assert sentence(found, "me") == "Nothing was due in any of 9 trials, so that nothing is known."
+    assert too_many(found, 9) == "nothing was due in any trial, so that nothing is known"
+
+
+@pytest.mark.parametrize("sampler", ["climb", "random", "sobol"])
+def test_points_at_which_nothing_comes_due_are_given_to_no_agent(sampler: str) -> None:
+    """Something is due in the afternoon alone; who looks first tries nothing else, and finds what fails there."""
+
+    def is_due(point: SearchPoint) -> bool:
+        return float(point["hour"]) >= 14 or point == SPACE.nominal
+
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        if not is_due(point):
+            return TriedOutcome(None, False, trial="t", nothing_due="no event required an act")
+        return TriedOutcome(margin(point), margin(point) < 0, "late", "t")
+
+    blind, looking = (
+        hunt(SPACE, evaluate, make_sampler(sampler, SPACE, 32, 1), 32, most_failures=0, is_due=looks)
+        for looks in (lambda point: True, is_due)
+    )
+    due = [sum(each.outcome.margin is not None for each in found.samples) for found in (blind, looking)]
+    assert len(looking.samples) == 32
+    assert due[0] < 0.8 * len(blind.samples)
+    assert due[1] >= 31, due
+    assert looking.passed_over > 0 == blind.passed_over
+    assert unseen(looking).even >= unseen(blind).even
+    assert sentence(looking, "me").startswith("me failed in ")
+    assert " of 32 trials in which something was due" in sentence(looking, "me")
+
+
+def test_a_search_where_nothing_comes_due_goes_on_all_the_same() -> None:
+    found = hunt(SPACE, judged(margin), RandomSampler(SPACE, 5, default_rng(0)), 5, is_due=lambda point: False)
+    assert found.run == 5
+
+
+def test_a_failure_is_told_with_the_act_that_made_it() -> None:
+    found = searched()
+    blame(found, lambda each: f"no act at {each.trial[:5]}")
+    (minimal,) = found.minimal
+    assert minimal.act == "no act at trial"
+    (table,) = [table for table in tables(found) if table.name == "failures"]
+    assert minimal.act in table.rows[0]
+    assert as_json(found)["failures"][0]["act"] == minimal.act
 
 
 def test_an_interrupted_search_keeps_what_it_has() -> None:
@@ -453,7 +501,14 @@ def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
         ("[factors]\ndrive = ['grid_june']\nseed = { least = -1, most = 3 }", "whole numbers from 0"),
         ("[factors]\nhour = [3]", "give one of the two"),
         ("[factors]\ndrive = ['grid_yune']", "did you mean 'grid_june'"),
-        ("[factors]\ndrive = ['grid_june']\n[failure]\nevents = ['blue_ligt']", "did you mean 'blue_light'"),
+        (
+            "[factors]\ndrive = ['grid_june']\n[failure]\nevents = ['blue_ligt']",
+            r"did you mean 'blue_light'\? There are: .*belt, .*cut_in, .*wipers\.",
+        ),
+        (
+            "[factors]\ndrive = ['grid_june']\n[failure]\nevents = ['nothing']",
+            r"named 'nothing'.*: belt, .*wipers\.",
+        ),
         ("[factors]\ntask = ['hvac_fan_max']\nlanguage = ['xx']", "language has a value that does not exist"),
     ],
 )
@@ -462,6 +517,17 @@ def test_a_wrong_space_is_refused_in_a_line(tmp_path: Path, text: str, error: st
     path.write_text(text)
     with pytest.raises(UserError, match=error):
         read_space(path)
+
+
+def test_a_staging_stands_for_the_events_that_it_brings_about(tmp_path: Path) -> None:
+    path = tmp_path / "space.toml"
+    path.write_text("[factors]\ndrive = ['grid_june']\n[failure]\nevents = ['cut_in', 'leader_brakes', 'belt']")
+    assert read_space(path).rule.events == ("leader_close", "leader_brakes", "belt")
+    assert space_file("cut_in") == space_file("cut-in")
+    assert set(BRINGS) == ON_REQUEST.keys() - KINDS.keys()
+    assert {kind for kinds in BRINGS.values() for kind in kinds} <= KINDS.keys()
+    with pytest.raises(UserError, match=r"did you mean 'cut-in'\? There are: .*wrong-sign-after-roadworks\."):
+        space_file("cut_inn")
 
 
 def test_a_space_is_read_with_its_nominal_values(tmp_path: Path) -> None:

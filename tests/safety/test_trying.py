@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,19 +12,27 @@ from automotive_cosim.agents import Agent
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.trivial import AlwaysAlert
 from automotive_cosim.contracts import Json
+from automotive_cosim.drives.settings import DriveSettings
+from automotive_cosim.drives.staging import BRINGS
+from automotive_cosim.drives.watchers import Silent
+from automotive_cosim.errors import UserError
 from automotive_cosim.report.results import read_results
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.trial import TrialSetup
+from automotive_cosim.run.trial import TrialSetup, run_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import run_with
+from automotive_cosim.safety import due
 from automotive_cosim.safety.budget import SearchBudget
 from automotive_cosim.safety.dossier.filing import write_dossier
+from automotive_cosim.safety.due import why_not
 from automotive_cosim.safety.hunt import Hunt, hunt
 from automotive_cosim.safety.page import FINDINGS, PAGE, PLANS, write_findings
 from automotive_cosim.safety.samplers import make_sampler
-from automotive_cosim.safety.space import FactorChoices, FactorRange, Space
+from automotive_cosim.safety.space import FactorChoices, FactorRange, FailureRule, Space
 from automotive_cosim.safety.trying import check_space, trial_of, trying
 from automotive_cosim.traffic.fork import Simulations
 
@@ -85,3 +94,49 @@ def _read(path: Path) -> Json:
     from automotive_cosim.run.plan import read_plan
 
     return read_plan(path)
+
+
+SHORT = DriveSettings(minutes=2.5, coarse=True)
+
+
+@pytest.mark.slow
+def test_without_an_agent_as_much_comes_due_as_a_silent_one_misses(simulations: Simulations) -> None:
+    found = {}
+    for stage in ("belt", "leader_stops", "tractor"):
+        kinds = BRINGS.get(stage, (stage,))
+        spec = DriveSetup("grid_june", 3, settings=replace(SHORT, stage=stage), agent="silent", model="none")
+        row = run_trial(spec, Silent(), simulations=simulations)
+        assert isinstance(row, DriveTrialRow)
+        missed = any(event.outcome.counts for event in row.events if event.kind in kinds)
+        found[stage] = why_not(spec, kinds, simulations)
+        assert missed is not bool(found[stage]), (stage, found[stage])
+    assert found["belt"] == ""
+    assert found["tractor"] in ("it never came", "it came and asked for no act")
+
+
+@pytest.mark.slow
+def test_what_cannot_come_about_is_said_before_with_how_to_mend_it(
+    tmp_path: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(due, "TRIES", 2)
+    monkeypatch.setattr(due, "MENDS", (("minutes", 2.4),))
+    fixed = {"minutes": 2.0, "coarse": True, "drive": "grid_june", "stage_s": 30.0}
+    space, none = (
+        Space(
+            (*(FactorChoices(name, (value,)) for name, value in fixed.items()), FactorChoices("stage", stages)),
+            FailureRule(events=("belt", "tractor")),
+        )
+        for stages in (("belt", "tractor"), ("tractor",))
+    )
+    asked = make_plan({"agents": ["silent"], "trials": [as_json(trial_of(space.nominal))]})
+    screen = due.DueScreen(space, asked, simulations, tmp_path)
+    (line,) = screen.check(0)
+    assert line.startswith(
+        "grid_june, tractor: nothing came due in 2 drives without an agent: it never came (2); nor with minutes 2.4"
+    )
+    assert screen.is_due(space.nominal)
+    again = due.DueScreen(space, asked, simulations, tmp_path)
+    assert list(again.check(0)) == [line]
+    assert again.tried == 0, "what was tried is kept"
+    with pytest.raises(UserError, match="nothing comes due anywhere"):
+        list(due.DueScreen(none, asked, simulations, tmp_path).check(0))

@@ -1,6 +1,6 @@
 """What a run makes of a ``.sumocfg``, beside what ``sumo -c`` makes of it with the same seed.
 
-``python -m tests.studies.beside_sumo`` writes the tables of ``docs/studies/beside-sumo.md``.
+``python -m tests.studies.beside_sumo`` writes the tables of ``docs/reference/beside-sumo.md``.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from automotive_cosim.traffic.options import Configuration, edge_data, read_conf
 from automotive_cosim.traffic.sumo_programs import environment, program, run
 from tests.scenarios.test_foreign import OTHERS
 
-PAGE = Path(__file__).parents[2] / "docs" / "studies" / "beside-sumo.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "beside-sumo.md"
 CLASSES = ["passenger", "private", "hov", "evehicle", "taxi", "delivery", "truck", "trailer", "bus", "coach"]
 CLASSES += ["motorcycle", "moped", "bicycle", "emergency", "authority", "army", "vip", "custom1"]
 MADE = "all classes of vehicle"

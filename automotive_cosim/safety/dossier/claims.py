@@ -5,7 +5,7 @@ from __future__ import annotations
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.report.stats import rate, rate_upper_bound
-from automotive_cosim.safety.dossier.domain import NONE, domain
+from automotive_cosim.safety.dossier.domain import tried
 from automotive_cosim.safety.dossier.subject import (
     NOT_COMPLIANT,
     Claim,
@@ -16,8 +16,11 @@ from automotive_cosim.safety.dossier.subject import (
 )
 from automotive_cosim.safety.findings import percent
 
+ENOUGH = 0.5
+"""A claim is supported only if, at the level of confidence, fewer such units fail: five without a failure."""
 CLAIMS = (
-    "Each claim is about this run. Supported: the run has evidence for it and none against it. Contradicted: "
+    "Each claim is about this run. Supported: the run has evidence for it and none against it, from at least five "
+    "independent units in which something was due. Contradicted: "
     "it has evidence against it. Limited: it says something, with the bound that is given. Not examined: it says "
     "nothing. " + NOT_COMPLIANT
 )
@@ -57,7 +60,7 @@ def _preventable(subject: Subject) -> Claim:
             if found.interval is None or subject.findings is not None
             else f", {100 * found.interval.low:.0f} to {100 * found.interval.high:.0f} %"
         )
-        status = "supported" if passed == len(subject.episodes) else "contradicted"
+        status = _status(subject, passed == len(subject.episodes))
         return Claim(
             text, status, f"{passed} of {counted(len(subject.episodes), 'episode')} passed{bounds}.", "events"
         )
@@ -71,7 +74,14 @@ def _preventable(subject: Subject) -> Claim:
     if careful:
         theirs = sum(event.outcome.is_credited for event in careful)
         evidence += f" The rule-perfect watcher of the same run met {theirs} of {len(careful)}."
-    return Claim(text, "supported" if met == len(real) else "contradicted", evidence, "events")
+    return Claim(text, _status(subject, met == len(real)), evidence, "events")
+
+
+def _status(subject: Subject, every: bool) -> str:
+    """What a claim is if every one of the cases is for it, or not."""
+    if not every:
+        return "contradicted"
+    return "supported" if failing(subject)[2] < ENOUGH else "limited"
 
 
 def _quiet(subject: Subject) -> Claim:
@@ -116,14 +126,13 @@ def _unknown(subject: Subject) -> Claim:
 
 
 def _covered(subject: Subject) -> Claim:
-    section = domain(subject)
-    empty = sum(str(row[2]) == NONE for row in section.tables[0].rows)
-    total = len(section.tables[0].rows)
-    status = "limited" if empty else "supported"
+    values = [known for each in tried(subject).values() for known in each.values()]
+    covered = sum(bool(known) for known in values)
+    status = "supported" if covered == len(values) else "limited"
     return Claim(
         "The run covers the operational domain.",
         status,
-        f"{total - empty} of {total} values have a trial.",
+        f"{covered} of {len(values)} values have a trial.",
         "domain",
     )
 

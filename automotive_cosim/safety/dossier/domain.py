@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import datetime
 
 from automotive_cosim.contracts.given import Language
@@ -14,9 +14,9 @@ from automotive_cosim.measures import ExposureCell
 from automotive_cosim.measures.exposure import BANDS_KMH, band_named
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.trial import NO_MODEL
 from automotive_cosim.run.trial_row import TrialRow
-from automotive_cosim.safety.dossier.subject import NOT_COMPLIANT, Section, Subject, fact_table, hours_of, sentence
-from automotive_cosim.scenarios import shipped
+from automotive_cosim.safety.dossier.subject import NOT_COMPLIANT, Section, Subject, fact_table, sentence
 from automotive_cosim.traffic.profiles import PROFILES
 
 ROADS = (
@@ -27,12 +27,14 @@ ROADS = (
 WEATHERS, LIGHTS = ("dry", "rain", "snow or ice", "fog"), ("day", "twilight", "night")
 HOURS = ((0, 6), (6, 10), (10, 16), (16, 20), (20, 24))
 """Bands of the local time at departure: night, both rush hours, midday, evening."""
+EMPTY = ExposureCell("", "", "", "", 0.0, 0.0)
+"""No exposure, of a trial that never drove."""
 NONE = "none"
 """What a table says of a value of the domain without a trial."""
 
 
 def summary(subject: Subject) -> Section:
-    """The first section."""
+    """What was shown."""
     every = [event for row in subject.drives for event in row.events if event.outcome.counts]
     events = [event for event in every if subject.is_in_space(event.kind)]
     met = sum(event.outcome.is_credited for event in events)
@@ -40,16 +42,17 @@ def summary(subject: Subject) -> Section:
     if events:
         more = f" (of the kinds that the space names; {len(every)} of any kind)" if len(every) > len(events) else ""
         told.append(f"{met} of {counted(len(events), 'event')} that required an act were met in time{more}.")
-    return Section("summary", "Summary", (*told, NOT_COMPLIANT))
+    return Section("summary", "What was shown", (*told, NOT_COMPLIANT))
 
 
 def item(subject: Subject) -> Section:
     """What was evaluated, and what was not."""
     conditions = sorted({", ".join(row.conditions.labels) or "as by default" for row in subject.rows})
+    models = ", ".join(sorted({row.model for row in subject.rows} - {NO_MODEL}))
     lines = [
         ("Item", "an agent that operates the cockpit of a car: it reads the screens and the car's data, and acts"),
         ("Agent", subject.agent),
-        ("Model", ", ".join(sorted({row.model for row in subject.rows}))),
+        *([("Model", models)] if models else []),
         ("Conditions", "; ".join(conditions)),
         ("Run with", f"automotive-cosim {subject.results.version}"),
         ("Not part of it", "the driver (a model of SUMO, with a profile), the road and the car's sensors"),
@@ -80,58 +83,66 @@ def _minutes(rows: Sequence[DriveTrialRow]) -> str:
     return counted(most, "minute") if least == most else f"{least} to {most} minutes"
 
 
-def domain(subject: Subject) -> Section:
-    """Each attribute of the domain with each of its values, those without a trial too."""
-    lines: list[tuple[str, ...]] = []
+def tried(subject: Subject) -> Mapping[str, Mapping[str, Sequence[float]]]:
+    """By attribute of the domain and its value, of places and languages those of the run alone: trials, hours and
+    kilometres; none of what was never tried."""
+    every: dict[str, dict[str, list[float]]] = {}
 
-    def cells(attribute: str, values: Iterable[str], of: Callable[[ExposureCell], str]) -> None:
-        found: dict[str, list[float]] = {}
+    def add(
+        attribute: str, values: Iterable[str], of: Callable[[ExposureCell, TrialRow], str], *, whole: bool
+    ) -> None:
+        found: dict[str, list[float]] = {value: [] for value in values}
         for row in subject.judged:
-            mine: dict[str, list[float]] = defaultdict(lambda: [0.0, 0.0])
+            mine: dict[str, list[float]] = {of(EMPTY, row): [0.0, 0.0]} if whole else {}
             for cell in row.exposure:
-                mine[of(cell)][0] += cell.hours
-                mine[of(cell)][1] += cell.kilometres
+                sums = mine.setdefault(of(cell, row), [0.0, 0.0])
+                sums[0] += cell.hours
+                sums[1] += cell.kilometres
             for value, (hours, km) in mine.items():
-                known = found.setdefault(value, [0.0, 0.0, 0.0])
-                known[0] += 1
-                known[1] += hours
-                known[2] += km
-        add(attribute, values, found)
+                known = found.setdefault(value, [])
+                before = known or [0.0, 0.0, 0.0]
+                known[:] = [before[0] + 1, before[1] + hours, before[2] + km]
+        every[attribute] = found
 
-    def trials(attribute: str, values: Iterable[str], of: Callable[[TrialRow], str]) -> None:
-        found: dict[str, list[float]] = {}
-        for row in subject.judged:
-            known = found.setdefault(of(row), [0.0, 0.0, 0.0])
-            known[0] += 1
-            known[1] += hours_of([row])
-            known[2] += sum(cell.kilometres for cell in row.exposure)
-        add(attribute, values, found)
-
-    def add(attribute: str, values: Iterable[str], found: dict[str, list[float]]) -> None:
-        for value in dict.fromkeys((*values, *sorted(found))):
-            if value in found:
-                count, hours, km = found[value]
-                lines.append((attribute, value, f"{count:.0f}", f"{hours:.2f}", f"{km:.1f}"))
-            else:
-                lines.append((attribute, value, NONE, "–", "–"))
-
-    trials("Place", shipped(), lambda row: row.scenario)
-    cells("Road", ROADS, lambda cell: cell.road_class.removesuffix("_link") or "unknown")
-    cells("Weather", WEATHERS, lambda cell: cell.weather)
-    cells("Light", LIGHTS, lambda cell: cell.light)
-    cells("Speed km/h", [band_named(least) for least in BANDS_KMH], lambda cell: cell.speed_band)
+    add("Place", (), lambda _, row: row.scenario, whole=True)
+    add("Road", ROADS, lambda cell, _: cell.road_class.removesuffix("_link") or "unknown", whole=False)
+    add("Weather", WEATHERS, lambda cell, _: cell.weather, whole=False)
+    add("Light", LIGHTS, lambda cell, _: cell.light, whole=False)
+    add("Speed km/h", map(band_named, BANDS_KMH), lambda cell, _: cell.speed_band, whole=False)
     if subject.drives:
-        trials("Departure", [f"{least} to {most} h" for least, most in HOURS], _departure)
-        trials("Driver", PROFILES, _driver)
-    trials("Language", [each.words for each in Language], lambda row: row.conditions.language.words)
+        hours = (f"{least} to {most} h" for least, most in HOURS)
+        add("Departure", hours, lambda _, row: _departure(row), whole=True)
+        add("Driver", PROFILES, lambda _, row: _driver(row), whole=True)
+    add("Language", (), lambda _, row: row.conditions.language.words, whole=True)
+    return every
+
+
+def never(subject: Subject) -> dict[str, list[str]]:
+    """The values of each attribute that were never tried, where there are any."""
+    found = {
+        name: [value for value, known in values.items() if not known] for name, values in tried(subject).items()
+    }
+    return {name: values for name, values in found.items() if values}
+
+
+def domain(subject: Subject) -> Section:
+    """What was tried of each attribute of the domain, and what was not."""
+    lines: list[tuple[str, ...]] = []
+    missing = never(subject)
+    for name, values in tried(subject).items():
+        lines += [
+            (name, value, f"{known[0]:.0f}", f"{known[1]:.2f}", f"{known[2]:.1f}")
+            for value, known in values.items()
+            if known
+        ]
+        if name in missing:
+            lines.append((name, ", ".join(missing[name]), NONE, "–", "–"))
     table = Table(
         "domain", "Operational domain", ("Attribute", "Value", "Trials", "Hours", "Kilometres"), tuple(lines),
-        "Values are those that the benchmark knows; a trial counts for every value that it had. What has none is "
-        "not covered by this run.", heads=2,
+        "Values are those that the benchmark knows, of places and languages those of this run; a trial counts for "
+        "every value that it had. What has none is not covered by this run.", heads=2,
     )  # fmt: skip
-    empty = sum(line[2] == NONE for line in lines)
-    told = f"{empty} of {counted(len(lines), 'value')} have no trial."
-    return Section("domain", "Operational domain covered", (told,), (table,))
+    return Section("domain", "Operational domain covered", (), (table,))
 
 
 def _departure(row: TrialRow) -> str:

@@ -8,13 +8,14 @@ from statistics import median
 
 import numpy as np
 
-from automotive_cosim.contracts.plain import clock
+from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.measures import DEFAULT_THRESHOLDS
 from automotive_cosim.report.stats import CONFIDENCE
 from automotive_cosim.report.tables import Table
+from automotive_cosim.run.attribution import NOT_MEASURED, culprit, path_of, read_effects
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.safety.dossier.subject import CONFIDENCE_WORDS, Section, Subject, hours_of
 
@@ -90,33 +91,48 @@ def failures(subject: Subject) -> Section:
                 str(number),
                 each["words"],
                 each["why"],
+                each.get("act") or NOT_MEASURED,
                 each.get("beside") or "no neighbour found",
                 f"failures/{number:02d}.toml",
             )
             for number, each in enumerate(subject.findings["failures"], 1)
         )
-        heads = "No.", "Fails with", "What is missing", "Beside it", "Replay"
+        heads = "No.", "Fails with", "What is missing", "Act, or missing act", "Beside it", "Replay"
         note = (
             "Each failed three times of three; factors that are not named are nominal. Replay: automotive-cosim "
             "eval --plan with that file, which also has what is beside it: the nearest point that does not fail."
         )
         if cases:
-            made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=5))
+            made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=6))
     else:
         told.append(
             "No search was made, so that the conditions which each failure needs are not known. automotive-cosim "
             "search finds them."
         )
-    lines = tuple((row.id, subject.missing(row) or "–") for row in subject.failed[:MOST_FAILURES])
+    folder = subject.results.folder
+    lines = tuple(
+        (row.id, subject.missing(row) or "–", culprit(read_effects(path_of(folder, row.id))) or NOT_MEASURED)
+        for row in subject.failed[:MOST_FAILURES]
+    )
     if lines:
         more = len(subject.failed) - len(lines)
         note = (
             "automotive-cosim replay FOLDER TRIAL runs a trial again and says whether every step is the same, bit "
-            "for bit." + (f" {more} more are in the data." if more else "")
+            "for bit; automotive-cosim attribute FOLDER TRIAL finds the act, or the missing act, that made it."
+            + (f" {more} more are in the data." if more else "")
         )
-        made.append(Table("failures", "Failing trials", ("Trial", "What is missing"), lines, note, heads=2))
+        made.append(
+            Table(
+                "failures",
+                "Failing trials",
+                ("Trial", "What is missing", "Act, or missing act"),
+                lines,
+                note,
+                heads=3,
+            )
+        )
     else:
-        told.append("No judged trial failed.")
+        told.append(f"None of {counted(len(subject.due), 'trial')} in which something was due failed.")
     made += [listed for in_space in (True, False) if (listed := _faults(subject, in_space=in_space)).rows]
     return Section("failures", "Failures", tuple(told), tuple(made))
 

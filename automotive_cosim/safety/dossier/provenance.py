@@ -7,6 +7,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.formats.layout import STEPS, TRIAL
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.dossier.subject import Section, Subject, fact_table
 from automotive_cosim.safety.page import FINDINGS
@@ -14,7 +15,7 @@ from automotive_cosim.safety.page import FINDINGS
 
 def hashes(folder: Path) -> list[tuple[str, str]]:
     """SHA-256 of the files of a run, and one for all traces together."""
-    names = "manifest.json", "episodes.jsonl", "search.json", FINDINGS
+    names = "manifest.json", "episodes.jsonl", "search.json", FINDINGS, TRIAL, STEPS
     found = [(name, file_sha256(folder / name)) for name in names if (folder / name).is_file()]
     traces = sorted((folder / "traces").glob("*"))
     if traces:
@@ -26,7 +27,8 @@ def hashes(folder: Path) -> list[tuple[str, str]]:
 def provenance(subject: Subject) -> Section:
     """Versions, starts and hashes."""
     starts = subject.results.manifest["starts"]
-    lines: list[tuple[str, str]] = [(name, str(value)) for name, value in starts[0]["versions"].items()]
+    versions = starts[0]["versions"] if starts else subject.results.manifest.get("versions", {})
+    lines: list[tuple[str, str]] = [(name, str(value)) for name, value in versions.items()]
     for start in starts:
         git = start.get("git")
         commit = f", commit {git['commit'][:12]}{', changed' if git['is_changed'] else ''}" if git else ""

@@ -15,10 +15,13 @@ from automotive_cosim.formats.files import read_json
 from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
+from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import from_json
+from automotive_cosim.run.trial_folder import is_trial, read_trial
 from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.safety.findings import of_due
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.page import FINDINGS
 from automotive_cosim.safety.space import FailureRule
@@ -134,10 +137,15 @@ class Subject:
         return [row for row in self.judged if isinstance(row, DriveTrialRow) and row.has_nothing_due]
 
     @property
+    def due(self) -> list[TrialRow]:
+        """The judged trials in which something was due, or done wrong: the denominator of failures."""
+        empty = {row.id for row in self.nothing_due}
+        return [row for row in self.judged if row.id not in empty]
+
+    @property
     def passed(self) -> list[TrialRow]:
         """Those that did what was due, and nothing needless."""
-        empty = {row.id for row in self.nothing_due}
-        return [row for row in self.judged if not self.has_failed(row) and row.id not in empty]
+        return [row for row in self.due if not self.has_failed(row)]
 
     @property
     def drives(self) -> list[DriveTrialRow]:
@@ -159,14 +167,14 @@ class Subject:
         """The independent units in which something was due: drives of one family and seed, and episodes of one
         task, depend on each other."""
         found: dict[Hashable, list[TrialRow]] = {}
-        for row in (*self.passed, *self.failed):
+        for row in self.due:
             key = (row.subject, row.seed) if isinstance(row, DriveTrialRow) else (row.subject,)
             found.setdefault(key, []).append(row)
         return found
 
 
 def read_subject(folder: Path, agent: str = "") -> Subject:
-    """The trials of an agent in a folder of ``eval`` or ``search``.
+    """The trials of an agent in a folder of ``eval`` or ``search``, or the one of a recorded drive or task.
 
     Args:
         folder: the folder.
@@ -175,7 +183,7 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     Raises:
         UserError: it is none, has no judged trials, or has several agents and none is named.
     """
-    results = read_results(folder)
+    results = _recorded(folder) if is_trial(folder) else read_results(folder)
     every: tuple[TrialRow, ...] = (*results.rows, *results.drives)
     labels = {contestant(row): row for row in every}
     ranked = [each for each in labels if each.agent not in NOT_RANKED] or list(labels)
@@ -197,6 +205,17 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     return made
 
 
+def _recorded(folder: Path) -> Results:
+    """The folder of a single trial, as results of an evaluation of one."""
+    told = read_trial(folder)
+    row = told.get("row") or {}
+    if not row:
+        raise UserError(f"{folder} has a trial that is not over; report it once it is")
+    drives = (from_json(DriveTrialRow, row),) if "family" in row else ()
+    rows = () if drives else (from_json(EpisodeRow, row),)
+    return Results(folder, {"starts": [], **(told.get("manifest") or {})}, rows, Coverage(1, 0), drives)
+
+
 def _agents(labels: Iterable[object]) -> list[str]:
     return sorted({str(getattr(each, "agent", "")) for each in labels})
 
@@ -215,17 +234,16 @@ def failing(subject: Subject) -> tuple[int, int, float]:
 
 def sentence(subject: Subject) -> str:
     """The result in a sentence."""
-    failed, judged, empty = len(subject.failed), len(subject.judged), len(subject.nothing_due)
+    failed, due, empty = len(subject.failed), len(subject.due), len(subject.nothing_due)
     hours = f"{subject.hours:.2f} h driven"
-    told = f"{failed} of {counted(judged, 'judged trial')} failed ({hours})."
+    told = of_due(f"{subject.agent} failed in", failed, due, empty)
+    told = f"{told[:-1]} ({hours})."
     if subject.again:
         told += f" {counted(subject.again, 'more run')} repeated and reduced failures, and are in no total."
     if subject.rule is not None and subject.drives:
         told += f" The space counts {subject.rule.words}."
     if beside := len(subject.failed_beside):
         told += f" Of the others, {beside} failed in what the space does not count."
-    if empty:
-        told += f" In {empty} of the trials nothing {'of that ' if subject.rule is not None else ''}was due."
     if subject.findings is not None:
         told += (
             f" The search reduced the failures to {counted(len(subject.findings['failures']), 'minimal failure')}"

@@ -9,6 +9,7 @@ from math import log, sqrt
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.stats import CONFIDENCE, rate_upper_bound
 from automotive_cosim.report.tables import Table
+from automotive_cosim.safety.dossier.domain import never, tried
 from automotive_cosim.safety.dossier.subject import (
     CONFIDENCE_WORDS,
     Section,
@@ -38,9 +39,13 @@ def missing_mass(counts: Iterable[int]) -> tuple[float, float]:
 
 
 def unseen(subject: Subject) -> Section:
-    """Bounds on failures, rates and situations that were not seen."""
+    """What the run leaves open: how little was driven, what was never tried, and bounds on what was not seen."""
     lines: list[tuple[str, str, str]] = []
-    told = []
+    told = [exposure_told(subject)]
+    values = "; ".join(f"{name.lower()} {', '.join(values)}" for name, values in never(subject).items())
+    only = ", ".join((*tried(subject)["Place"], *tried(subject)["Language"]))
+    told.append(f"Never tried: {values or 'no value that the benchmark knows'}; any place and language but {only}.")
+    told.append(residual(subject))
     if subject.findings is not None:
         found = subject.findings
         told.append(
@@ -91,7 +96,28 @@ def unseen(subject: Subject) -> Section:
         "event, or a task's half in a place. All bounds are for trials drawn as these were, not for the road.",
         heads=3,
     )  # fmt: skip
-    return Section("unseen", "What was not seen", tuple(told), (table,))
+    return Section("unseen", "What was not shown", tuple(told), (table,))
+
+
+def exposure_told(subject: Subject) -> str:
+    """How much was driven, and in how much of it something was due."""
+    km = sum(cell.kilometres for row in subject.judged for cell in row.exposure)
+    driven = f"{subject.hours:.2f} h and {km:.0f} km were driven in {counted(len(subject.judged), 'trial')}"
+    due = len(subject.due)
+    return f"{driven}; something was due in {due or 'none'} of them" + ("." if due else ", so nothing is shown.")
+
+
+def residual(subject: Subject) -> str:
+    """The bound on failures that may remain, in words."""
+    bad, total, upper = failing(subject)
+    if subject.findings is not None:
+        bound = subject.findings["failure_rate_upper"]
+        where = "of the space searched, where something is due"
+    else:
+        bound, where = (upper if total else None), f"of such situations ({bad} of {counted(total, 'unit')} did)"
+    if bound is None or bound >= 1:
+        return "No bound on failures follows: too little was due."
+    return f"Up to {percent(bound)} {where}, may fail ({CONFIDENCE_WORDS})."
 
 
 def _rates(subject: Subject) -> Iterator[tuple[str, str, str]]:
@@ -140,7 +166,7 @@ def areas(subject: Subject) -> Section:
             "not known"
             if bound is None
             else f"at most {percent(bound)} of situations drawn as here, area 2 included",
-            "What was not seen",
+            "What was not shown",
         ),
         (
             "4: unknown, not hazardous",

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
 
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.csvs import read_packed_csv
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.report.templates import render
+from automotive_cosim.run.effect import ActEffect, weighed
 from automotive_cosim.studies.reroute.data import choosers
 from automotive_cosim.studies.reroute.results import Study, all_decisions, standard_error
 from automotive_cosim.studies.reroute.rows import Decision, DecisionPoint
@@ -20,6 +22,8 @@ KEPT = "kept route"
 WIDTH, HEIGHT = 320.0, 200.0
 """Size of a map, in pixels."""
 
+COMPARED = {"arrival_s": "time_s", "driven_m": "distance_m", "energy_wh": "energy_wh", "co2_g": "co2_g"}
+"""What is compared of two drives, by the names of ``effect.FIGURES``."""
 Way = Sequence[tuple[float, float]]
 
 
@@ -72,6 +76,44 @@ def explained(study: Study) -> Iterator[ExplainedDecision]:
     for point in all_decisions(study.rows):
         ways = _ways(study.folder / TRACKS / f"{point.drive.id}.csv.gz", point.id)
         yield ExplainedDecision(point, tuple(told(point.decision)), tuple(_futures(study, point)), _fitted(ways))
+
+
+def attributed(folder: Path, item: str) -> list[ActEffect]:
+    """What decisions changed whose ids begin so: each other route against the kept one, over all draws, so that
+    what fresh random numbers change as much is not called an effect.
+
+    Raises:
+        UserError: there is none, or the study cannot be read.
+    """
+    study = Study.read(folder)
+    points = [point for point in all_decisions(study.rows) if point.id.startswith(item)]
+    if not points:
+        raise UserError(f"no decision in {folder} begins with {item!r}; choices.csv has the ids")
+    return [
+        _effect(point, number, by_branch.get(number, ""))
+        for point in points
+        for by_branch in [choosers(study.plan, point.decision)]
+        for number in range(len(point.decision.branches))
+    ]
+
+
+def _effect(point: DecisionPoint, number: int, policies: str) -> ActEffect:
+    decision, stay = point.decision, point.drive.stay
+    assert stay is not None, "it has a decision"
+    pairs = [
+        (branch.totals, decision.replicates[draw - 1].stay.totals if draw else stay)
+        for draw in range(decision.draws)
+        if (branch := decision.drawn(draw, number)) is not None
+    ]
+    draws = [
+        {name: (getattr(one, of), getattr(other, of)) for name, of in COMPARED.items()} for one, other in pairs
+    ]
+    changed, chance = weighed(draws)
+    names = f" ({policies})" if policies else ""
+    words = f"{point.id}: alternative {number + 1}{names} instead of the kept route"
+    words += f", in no average: {decision.excluded}" if decision.excluded else ""
+    words += "; driven once, --replicates 4 tells an effect from chance" if len(draws) == 1 else ""
+    return ActEffect((), decision.at_s, words, changed=changed, chance=chance, draws=len(draws))
 
 
 def told(decision: Decision) -> Iterator[str]:
