@@ -76,6 +76,7 @@ def turn(
             "hands": _HANDS[profile.interface],
             "grammar": _grammar(profile, by_point=not is_listed, on_watch=observation.on_watch),
             "policy": observation.policy,
+            "thresholds": "" if profile.order.tells_thresholds else None,
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,

@@ -25,7 +25,7 @@ from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, Tracker
 from automotive_cosim.drives.events.errands import carried_out
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
-from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
+from automotive_cosim.drives.order import ANSWERS, ordered
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Baseline, JudgedSession, beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
@@ -115,8 +115,8 @@ class DriveSession(JudgedSession):
         Raises:
             TrafficError: the traffic simulation failed.
         """
-        orders = ORDERS_WITH_ERRANDS if world.car.errands else STANDING_ORDERS
-        begun: dict[str, Any] = beginning(world, orders[setup.conditions.language], setup, (), observer)
+        words = ordered(setup.conditions.order, setup.conditions.language, with_errands=bool(world.car.errands))
+        begun: dict[str, Any] = beginning(world, words, setup, (), observer)
         session = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm())
         session._note(world.moment)
         session._read()
@@ -304,5 +304,12 @@ class DriveSession(JudgedSession):
         if self._against is None:
             self._against = facts_of(self.moments)
         return judge(
-            KINDS, self.events, self.acts, self.due_anyway, self._against, self.moments[0].commands, untouched
+            KINDS,
+            self.events,
+            self.acts,
+            self.due_anyway,
+            self._against,
+            self.moments[0].commands,
+            untouched,
+            order=self.setup.conditions.order,
         )
