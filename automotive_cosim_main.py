@@ -1,6 +1,6 @@
 """The console script ``automotive-cosim``: Ctrl-C while the command line still loads ends it in silence.
 
-It stands beside the package because importing anything in the package imports gymnasium first, which takes a while.
+It stands beside the package because the command line takes a while to import.
 """
 
 from __future__ import annotations

@@ -91,8 +91,10 @@ def _conditions() -> str:
 
 
 def _families() -> str:
-    rows = [(f"`{each.id}`", each.season, each.about, ", ".join(each.cast)) for each in FAMILIES.values()]
-    return _table(("family", "season", "what it is", "what is staged"), rows)
+    return _table(
+        ("family", "season", "what it is"),
+        [(f"`{each.id}`", each.season, each.about) for each in FAMILIES.values()],
+    )
 
 
 def _kinds() -> str:

@@ -26,6 +26,7 @@ from automotive_cosim.cli import (
     drive,
     evaluate,
     export,
+    keep,
     mcp,
     measures,
     publish,
@@ -75,6 +76,7 @@ app.add_typer(agents.app, name="agents", rich_help_panel=CONTENTS)
 app.add_typer(show.app, name="show", rich_help_panel=CONTENTS)
 app.command(rich_help_panel=TOOLS)(doctor.doctor)
 app.command(rich_help_panel=TOOLS)(bench.bench)
+app.command(rich_help_panel=TOOLS)(keep.keep)
 app.command(rich_help_panel=TOOLS)(mcp.mcp)
 app.command(rich_help_panel=TOOLS)(a2a.a2a)
 for extension in extensions():

@@ -29,10 +29,21 @@ def report(
         typer.Option("--safety", help="Write a safety report to file: safety/ with a page, a PDF and its data."),
     ] = False,
     agent: Annotated[
-        str | None, typer.Option(help="Agent of the safety report, if there are several.", show_default=False)
+        str | None,
+        typer.Option(help="Agent of the safety report or the protocol, if there are several.", show_default=False),
+    ] = None,
+    protocol: Annotated[
+        str | None,
+        typer.Option(help="Protocol whose rows the trials speak for: euroncap-2026.", show_default=False),
     ] = None,
 ) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""
+    if protocol is not None:
+        from automotive_cosim.safety.protocol.page import write_protocol
+
+        page, unscored = write_protocol(folder, protocol, agent or "")
+        typer.echo(f"{page} written" + (f"; {unscored}" if unscored else ""))
+        return
     if safety:
         _safety(folder, agent or "")
         return

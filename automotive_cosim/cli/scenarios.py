@@ -388,7 +388,7 @@ def _print_report(report: ImportReport, name: str, folder: Path, took_s: float) 
     from rich.table import Table
 
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.osm.doubts import shortened
+    from automotive_cosim.osm.doubts import by_kind
 
     size_mb = sum(path.stat().st_size for path in folder.iterdir()) / 1e6
     flow = report.stability
@@ -426,7 +426,7 @@ def _print_report(report: ImportReport, name: str, folder: Path, took_s: float) 
         ("halted", f"{flow.halted_share_mean:.1%} on average, {flow.halted_share_max:.1%} in the worst minute"),
         ("teleports", _tested(flow)),
         ("took", f"{took_s:.0f} s, {megabytes_in_words(size_mb)}"),
-        *(("guessed" if index == 0 else "", shortened(text)) for index, text in enumerate(report.guessed)),
+        *(("guessed" if index == 0 else "", text) for index, text in enumerate(by_kind(report.guessed))),
         ("drive it", f"automotive-cosim run --scenario {folder}"),
         ("map", report.attribution),
     ):

@@ -153,11 +153,11 @@ def search(
                 ahead = even_points(
                     make_sampler(how.sampler, space, laid, how.seed), min(laid, may_use.most_points)
                 )
-                run.ahead(filter(screen.is_due, ahead))
+                run.ahead(filter(None, map(screen.placed, ahead)))
             except KeyboardInterrupt:
                 run.stop = "interrupted"
         most = may_use.most_points
-        found = hunt(space, run, chooses, most, most_failures=how.failures, is_due=screen.is_due, tell=tell)
+        found = hunt(space, run, chooses, most, most_failures=how.failures, place=screen.placed, tell=tell)
         found.interrupted |= bool(run.stop)
         if found.minimal and agent not in CAREFUL and not found.interrupted:
             careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})

@@ -9,15 +9,16 @@ An ``Occupant`` is how a task or a drive says it before departure. From then on 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
+from operator import itemgetter
 from typing import Annotated, Any
 
 from annotated_types import Gt, Le
 
-from automotive_cosim.cockpit.signals import OCCUPANT, Seated, Signal, Signals
+from automotive_cosim.cockpit.signals import OCCUPANT, Seated, Signals
 from automotive_cosim.errors import UserError
 
 
@@ -129,24 +130,27 @@ def take_seats(signals: Signals, aboard: Iterable[Occupant]) -> None:
 
 def seated(signals: Signals) -> Iterator[Occupant]:
     """Who is aboard now, by the signals, in the order of the seats."""
-    return _seated(signals.__getitem__)
+    return seated_by(signals.snapshot())
 
 
 def seated_by(values: Mapping[str, Any]) -> Iterator[Occupant]:
     """The same, by the values of the signals' paths."""
-    return _seated(lambda signal: values[signal.path])
+    return iter(_seated(_read(values)))
 
 
-def _seated(read: Callable[[Signal[Any]], Any]) -> Iterator[Occupant]:
-    for seat, at in SIGNALS.items():
-        if read(at.occupied) and (kind := read(at.kind)) != "NONE":
-            yield _occupant(seat, kind, read(at.weight), read(at.asleep), read(at.belted))
+_PARTS = ("occupied", "kind", "weight", "asleep", "belted")
+_read = itemgetter(*(getattr(at, part).path for part in _PARTS for at in SIGNALS.values()))
 
 
 @lru_cache(maxsize=256)
-def _occupant(seat: Seat, kind: str, weight_kg: float, asleep: bool, belted: bool) -> Occupant:
-    """Cached, because whoever looks asks again every second."""
-    return Occupant(seat, Kind(kind.lower()), weight_kg, asleep, belted)
+def _seated(values: tuple[Any, ...]) -> tuple[Occupant, ...]:
+    """Cached, because many ask every second. The values are those of all seats, one part after another."""
+    parts = (values[at : at + len(SIGNALS)] for at in range(0, len(values), len(SIGNALS)))
+    return tuple(
+        Occupant(seat, Kind(kind.lower()), weight_kg, asleep, belted)
+        for seat, occupied, kind, weight_kg, asleep, belted in zip(SIGNALS, *parts, strict=True)
+        if occupied and kind != "NONE"
+    )
 
 
 def in_words(signals: Signals) -> str:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from operator import itemgetter
 from typing import Any, Generic, TypeVar, cast
 
 from automotive_cosim.errors import SignalError, UnknownNameError
@@ -513,7 +514,7 @@ class Signals:
 
     def commanded(self) -> dict[str, Any]:
         """Path and value of every actuator; a copy."""
-        return {path: self._values[path] for path in ACTUATORS}
+        return dict(zip(ACTUATORS, _actuators(self._values), strict=True))
 
     def reset(self) -> None:
         """Resets all to their defaults."""
@@ -528,6 +529,7 @@ class Signals:
 
 ACTUATORS = tuple(path for path, signal in CATALOGUE.items() if signal.kind is LeafKind.ACTUATOR)
 """Paths of all actuators."""
+_actuators = itemgetter(*ACTUATORS)
 
 
 def difference(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:

@@ -153,7 +153,7 @@ class Car:
             return driving
         route = driving.ahead.route_edges
         still = tuple(
-            replace(way, edges=way.edges[way.edges.index(route[0]) :])
+            way if way.edges[0] == route[0] else replace(way, edges=way.edges[way.edges.index(route[0]) :])
             for way in self.alternatives
             if route and route[0] in way.edges
         )

@@ -54,9 +54,9 @@ class Alarm:
         found = []
         now_s = drive[-1].time_s
         for wake in self.wakes:
-            told = self._told.setdefault(wake.name, _Told())
-            reading = _risen(wake.reads(drive), told.reading)
-            if reading == told.reading:
+            told = self._told.get(wake.name) or self._told.setdefault(wake.name, _Told())
+            reading = wake.reads(drive)
+            if reading == told.reading or (reading := _risen(reading, told.reading)) == told.reading:
                 told.differs_since_s = None
                 continue
             if told.differs_since_s is None:

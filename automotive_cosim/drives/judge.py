@@ -88,13 +88,16 @@ class EventOutcome(StrEnum):
     @property
     def is_credited(self) -> bool:
         """Whether the agent did what was right in time."""
-        return self in (EventOutcome.HIT, EventOutcome.PREPARED, EventOutcome.PREVENTED)
+        return self in _CREDITED
 
     @property
     def counts(self) -> bool:
         """Whether recall counts it: an event in which something had to be done."""
-        failed = (EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED, EventOutcome.EVADED)
-        return self.is_credited or self in failed
+        return self in _COUNTED
+
+
+_CREDITED = frozenset({EventOutcome.HIT, EventOutcome.PREPARED, EventOutcome.PREVENTED})
+_COUNTED = _CREDITED | {EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED, EventOutcome.EVADED}
 
 
 class Worth(StrEnum):

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from automotive_cosim.contracts import Action, ActionType, Observation, VehicleState
 
@@ -216,6 +217,7 @@ def _read(seen: Observation, vehicle: VehicleState, context: str) -> Gathered:
     return known
 
 
+@lru_cache(maxsize=1024)
 def _law(text: str) -> LawLine:
     start = _SPEED.match(text)
     return LawLine(text, None if start is None else _kmh(start[0]), ", verified " in text)

@@ -11,6 +11,7 @@ first act, and over those that would have arisen had the agent not held the car 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
@@ -114,7 +115,7 @@ def score(judgement: Judgement, driven_s: float) -> Score:
         driven_s: how long it lasted.
     """
     events, acts = judgement.events, judgement.acts
-    counts = {outcome: sum(event.outcome is outcome for event in events) for outcome in EventOutcome}
+    counts = Counter(event.outcome for event in events)
     met = [event for event in events if event.outcome.is_credited]
     return Score(
         drives=1,

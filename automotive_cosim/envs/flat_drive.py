@@ -21,10 +21,10 @@ Everything is read from what an agent is given: its vehicle state, readings and 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import chain
+from itertools import chain, starmap
 from math import inf, log1p, log10
 from typing import Any, NamedTuple
 
@@ -35,7 +35,7 @@ import numpy.typing as npt
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
 from automotive_cosim.drives.changes import DUE_S, LONGEST_S, WAKES
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.reading import NO_LINE, Gathered, Reader
+from automotive_cosim.drives.reading import NO_LINE, Gathered, LawLine, Reader
 from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
@@ -106,8 +106,10 @@ def _ahead(name: str) -> Feature:
 def _share(name: str, full: float, pattern: str = r"(\d+\.?\d*)") -> Feature:
     """The first number of a reading as a share of ``full``; 0 without the reading."""
 
+    search = re.compile(pattern).search
+
     def share(known: Gathered) -> float:
-        found = re.search(pattern, known.words(name))
+        found = search(known.words(name))
         return 0.0 if found is None else float(found[1]) / full
 
     return share
@@ -219,15 +221,17 @@ class Sign(NamedTuple):
 
     alert: AlertKind
     """The alert that tells of it."""
-    seen: Callable[[Gathered], Hashable]
-    """What there is to see, None without it; it is another one when it changes."""
+    seen: Callable[[Gathered, Mapping[str, float]], Hashable]
+    """What there is to see, also in the features; None without it. It is another one when it changes."""
 
 
 def _reading(alert: AlertKind, name: str, pattern: str = ".+") -> Sign:
     """A reading whose words have a pattern."""
 
-    def seen(known: Gathered) -> Hashable:
-        found = re.search(pattern, known.words(name))
+    search = re.compile(pattern).search
+
+    def seen(known: Gathered, numbers: Mapping[str, float]) -> Hashable:
+        found = search(known.words(name))
         return None if found is None else found[0]
 
     return Sign(alert, seen)
@@ -235,13 +239,13 @@ def _reading(alert: AlertKind, name: str, pattern: str = ".+") -> Sign:
 
 def _number(alert: AlertKind, name: str, above: float, what: Callable[[Gathered], Hashable] = bool) -> Sign:
     """A feature above a value, of one thing or another."""
-    return Sign(alert, lambda known: what(known) if FEATURES[name](known) > above else None)
+    return Sign(alert, lambda known, numbers: what(known) if numbers[name] > above else None)
 
 
 SIGNS: Mapping[str, Sign] = {
     "above the limit": _number(AlertKind.SPEED, "above the limit", METER_KMH / 30, lambda known: known.limit_kmh),
     "above a reduced limit": _number(AlertKind.SPEED, "above a reduced limit", METER_KMH / 30, _reduced),
-    "limit ahead": Sign(AlertKind.SPEED, _limit_ahead_kmh),
+    "limit ahead": Sign(AlertKind.SPEED, lambda known, _: _limit_ahead_kmh(known)),
     "short gap": _number(AlertKind.DISTANCE, "shortness of the gap", 0.0),
     "braking": _number(AlertKind.COLLISION, "braking that it asks for", 0.2),
     "slow vehicle": _number(AlertKind.TRAFFIC, "speed at which it comes nearer", 0.15),
@@ -254,7 +258,7 @@ SIGNS: Mapping[str, Sign] = {
     "speed for the sight": _number(AlertKind.VISIBILITY, "speed for the sight", 0.5),
     "fogged": _reading(AlertKind.VISIBILITY, "glass", "by"),
     "unwiped": _reading(AlertKind.VISIBILITY, "rain", "by"),
-    "low beam off": Sign(AlertKind.VISIBILITY, lambda known: not known.vehicle.is_low_beam_on or None),
+    "low beam off": Sign(AlertKind.VISIBILITY, lambda known, _: not known.vehicle.is_low_beam_on or None),
     "high beam on": _number(AlertKind.VISIBILITY, "high beam", 0.5),
     "front fog lamps on": _number(AlertKind.VISIBILITY, "front fog lamps", 0.5),
     "rear fog lamp on": _number(AlertKind.VISIBILITY, "rear fog lamp", 0.5),
@@ -294,22 +298,20 @@ class DriveNumbers:
         """The numbers of the next observation."""
         known = self._reader.read(seen)
         assert known is not None  # the channels are always given
-        texts = (
-            (known.road, known.weather),
-            (f"{label} {line.said}" for label, line in known.law.items()),
-        )
+        numbers = {name: feature(known) for name, feature in FEATURES.items()}
+        texts = (known.road, known.weather), tuple(starmap(_rule_words, known.law.items()))
         for name, sign in SIGNS.items():
-            self._see(name, sign.seen(known), known.time_s)
+            self._see(name, sign.seen(known, numbers), known.time_s)
         ages_s = (known.time_s - self._since[name][1] if name in self._since else 0.0 for name in SIGNS)
         parts = [
-            *(feature(known) for feature in FEATURES.values()),
+            *numbers.values(),
             *chain.from_iterable(map(_words, texts, SLOTS)),
             *(float(name in known.changed) for name in READINGS),
             *map(_age, ages_s),
             *(float(name in self._since and name not in self._told) for name in SIGNS),
             *(_age(known.time_s - self._shown_s.get(kind, -LONG_S)) for kind in AlertKind),
         ]
-        return np.clip(np.array(parts, np.float32), -1.0, 1.0)
+        return np.array(parts, np.float32).clip(-1.0, 1.0)
 
     def _see(self, name: str, what: Hashable, now_s: float) -> None:
         """Notes a sign: since when it has been as it is, and whether it is still the one that was told of."""
@@ -325,12 +327,22 @@ class DriveNumbers:
 
 
 def _age(seconds: float) -> float:
-    return min(log1p(max(seconds, 0.0)) / log1p(LONG_S), 1.0)
+    return min(log1p(max(seconds, 0.0)) / _LOG_LONG, 1.0)
 
 
-def _words(lines: Iterable[str], slots: int) -> list[float]:
-    """Slots of the words of some lines, without numbers: these are features."""
+_LOG_LONG = log1p(LONG_S)
+
+
+@lru_cache(maxsize=1024)
+def _words(lines: tuple[str, ...], slots: int) -> list[float]:
+    """Slots of the words of some lines, without numbers: these are features. Cached, as most
+    lines are the same from second to second."""
     return hashed(map(_without_numbers, lines), slots)
+
+
+@lru_cache(maxsize=4096)
+def _rule_words(label: str, line: LawLine) -> str:
+    return f"{label} {line.said}"
 
 
 @lru_cache(maxsize=4096)

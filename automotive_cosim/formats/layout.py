@@ -4,8 +4,9 @@
                     at the end also its ``row`` as in ``episodes.jsonl`` and its ``result`` as in the last line of a
                     trace
     steps.jsonl     one line per step, written step by step: what a page shows, and hashes of the state for a replay
+                    (steps.jsonl.gz of a drive that is over, which has hundreds)
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
-                    road_000.jpg, ...: the view through the windshield after each step
+                    road_000.jpg, ...: the view through the windshield after each step (of a drive, if the agent is given it)
     road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
 
 ``run`` adds a film and a page, and the whole state to each line of its steps; a pair is a folder with both. In the
@@ -20,11 +21,13 @@ from pathlib import Path
 
 TRIAL = "trial.json"
 STEPS = "steps.jsonl"
+PACKED_STEPS = "steps.jsonl.gz"
+"""The same, once a drive is over."""
 SCREENSHOTS = "screenshots"
 ROAD = "road.jsonl.gz"
 FILM = "episode.webp"
 PAGE = "summary.html"
-OF_A_TRIAL = (TRIAL, STEPS, SCREENSHOTS, ROAD, FILM, PAGE)
+OF_A_TRIAL = (TRIAL, STEPS, PACKED_STEPS, SCREENSHOTS, ROAD, FILM, PAGE)
 
 PAIR = ("with_place", "without_place")
 """The folders of the two runs of ``run --pair``."""
@@ -37,6 +40,12 @@ WATCHED = "watched"
 
 PictureOf = Callable[[Path, int], Path]
 """``road_view`` or ``screenshot``: the path of a picture from a trial's folder and the number of a step."""
+
+
+def steps_in(folder: Path) -> Path:
+    """The steps of a trial."""
+    packed = folder / PACKED_STEPS
+    return packed if packed.is_file() else folder / STEPS
 
 
 def road_view(folder: Path, step: int) -> Path:

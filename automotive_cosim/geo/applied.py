@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
 
@@ -15,8 +15,8 @@ from automotive_cosim.contracts import (
     Weather,
 )
 from automotive_cosim.geo.place import Place
-from automotive_cosim.geo.rulefacts import RuleFacts, Test
-from automotive_cosim.geo.rules import TOPICS, Rule, Value
+from automotive_cosim.geo.rulefacts import CONDITIONS, RuleFacts, Test
+from automotive_cosim.geo.rules import TOPICS, Jurisdiction, Rule, Value
 from automotive_cosim.geo.sun import Sun
 from automotive_cosim.geo.weather import phenomena
 
@@ -105,6 +105,48 @@ def _applied(rule: Rule, jurisdiction: str, facts: RuleFacts) -> AppliedRule:
     return AppliedRule(rule, jurisdiction, *rule.answer(facts))
 
 
+class _Said:
+    """What the rules of some layers say, by the answers of their conditions: these are much the same from second to
+    second, and a drive asks every second."""
+
+    def __init__(self, layers: tuple[Jurisdiction, ...]) -> None:
+        rules = (rule for layer in layers for named in layer.by_topic.values() for rule in named)
+        tests = dict.fromkeys(test for rule in rules for test in rule.tests)
+        self._place = Place(layers=layers)
+        self._conditions = tuple((CONDITIONS[test.word].holds, test.argument) for test in tests)
+        self._known: dict[Hashable, tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]] = {}
+
+    def __call__(self, facts: RuleFacts) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
+        """The limits, and the rules of other topics."""
+        own = facts.road_class if facts.road_class in OWN_LAW else ""
+        answers = own, *[holds(facts, argument) for holds, argument in self._conditions]
+        said = self._known.get(answers)
+        if said is None:
+            if len(self._known) >= MOST_SAID:
+                self._known.clear()
+            said = self._known[answers] = (
+                tuple(limits(self._place, facts)),
+                tuple(_other_rules(self._place, facts)),
+            )
+        return said
+
+
+_SAID: dict[tuple[int, ...], _Said] = {}
+"""By the ids of layers, which it keeps."""
+MOST_SAID = 512
+"""Of places, and of answers at one of them, that are kept."""
+
+
+def said_at(place: Place, facts: RuleFacts) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
+    """``limits`` here and now, and by topic the rules of the innermost layer that has one for this road."""
+    layers = tuple(map(id, place.layers))
+    if layers not in _SAID:
+        if len(_SAID) >= MOST_SAID:
+            _SAID.clear()
+        _SAID[layers] = _Said(place.layers)
+    return _SAID[layers](facts)
+
+
 def limits(place: Place, facts: RuleFacts) -> Iterator[AppliedRule]:
     """The limits that this road may have, without those that an earlier one rules out.
 
@@ -140,8 +182,7 @@ def _names(rule: Rule, road_class: str) -> bool:
     return any(test.word == "road_classes" and road_class in test.argument for test in rule.tests)
 
 
-def other_rules(place: Place, facts: RuleFacts) -> Iterator[AppliedRule]:
-    """By topic, the rules of the innermost layer that has one for this road."""
+def _other_rules(place: Place, facts: RuleFacts) -> Iterator[AppliedRule]:
     for topic in TOPICS:
         if topic == "limit":
             continue

@@ -13,7 +13,7 @@ from datetime import datetime
 from functools import cached_property
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
-from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, limits, other_rules
+from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, said_at
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.geo.relevance import can_matter
@@ -95,17 +95,17 @@ class GeoContext:
     def default_limits(self) -> tuple[AppliedRule, ...]:
         """The legal limits for this road: several if the network does not determine which, none if no law is
         known."""
-        return tuple(found for found in self._limits if found.rule.fixed)
+        return tuple(found for found in self._said[0] if found.rule.fixed)
 
     @cached_property
     def reduced_limits(self) -> tuple[AppliedRule, ...]:
         """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
-        return tuple(found for found in self._limits if not found.rule.fixed)
+        return tuple(found for found in self._said[0] if not found.rule.fixed)
 
-    @cached_property
+    @property
     def rules(self) -> tuple[AppliedRule, ...]:
         """The other topics, in the order of ``rules.TOPICS``."""
-        return tuple(other_rules(self.place, self._facts))
+        return self._said[1]
 
     @cached_property
     def country(self) -> str:
@@ -157,8 +157,8 @@ class GeoContext:
         return facts_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
 
     @cached_property
-    def _limits(self) -> tuple[AppliedRule, ...]:
-        return tuple(limits(self.place, self._facts))
+    def _said(self) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
+        return said_at(self.place, self._facts)
 
 
 def answer(rule: Rule, context: GeoContext) -> Value | None:
@@ -194,7 +194,7 @@ def _lines(context: GeoContext) -> Iterator[Line]:
     if context.place.law:
         law = context.place.law
         yield Line(f"Country: traffic keeps {law.driving_side}; emergency call {', '.join(law.emergency)}", "place")
-    yield from (Line(_rule(found.rule), found.rule.id) for found in context.rules)
+    yield from (Line(found.rule.line, found.rule.id) for found in context.rules)
 
 
 def _place(context: GeoContext) -> str:
@@ -252,11 +252,11 @@ def _limits(context: GeoContext) -> Iterator[Line]:
     if not context.default_limits:
         yield Line("Default limit: unknown", "road")
     for found in context.default_limits:
-        yield Line(_rule(found.rule), found.rule.id)
+        yield Line(found.rule.line, found.rule.id)
     for found in context.reduced_limits:
         if not _is_lower(found, context):
             continue
-        yield Line(_rule(found.rule, "Reduced limit"), found.rule.id)
+        yield Line(f"Reduced limit: {found.rule.stated}", found.rule.id)
 
 
 def _is_lower(reduced: AppliedRule, context: GeoContext) -> bool:
@@ -273,10 +273,6 @@ def _kmh(limit: Rule) -> float:
     if isinstance(value, str):
         return float("inf")
     return value * KM_PER_MILE if limit.unit == "mph" else value
-
-
-def _rule(rule: Rule, label: str = "") -> str:
-    return f"{label or TOPICS[rule.topic]}: {rule.stated}"
 
 
 def _time(context: GeoContext) -> str:

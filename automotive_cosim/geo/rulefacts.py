@@ -11,6 +11,7 @@ import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, time
+from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any
 
 import shapely
@@ -115,6 +116,7 @@ When = Annotated[tuple[Test, ...], _When()]
 """Conditions, written as a table: ``{ motorway = true, weather = ["rain"] }``."""
 
 
+@lru_cache(maxsize=4096)
 def folded(name: str) -> str:
     """A street name for comparison, without accents, case, hyphens, apostrophes or double spaces."""
     plain = unicodedata.normalize("NFKD", name)

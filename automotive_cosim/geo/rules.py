@@ -122,6 +122,11 @@ class Rule:
         return f"{amount}{self.text} ({self.country} {self.law}, {self.status} {self.as_of})"
 
     @cached_property
+    def line(self) -> str:
+        """The same after its topic, as the context prints it."""
+        return f"{TOPICS[self.topic]}: {self.stated}"
+
+    @cached_property
     def _lasting(self) -> tuple[tuple[Test, ...], ...]:
         """Of each case, the conditions on place, road and date."""
         return tuple(tuple(test for test in case.when if test.fixed) for case in self.cases)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil
 
 BUDGET_TOKENS = 1500
@@ -36,8 +37,14 @@ def within_budget(all_lines: Iterable[Line], budget_tokens: int) -> str:
         tokens += ceil((len(line.text) + 1) / CHARACTERS_PER_TOKEN)
         if tokens > budget_tokens:
             break
-        kept.append(" ".join(line.text.split()))
+        kept.append(_on_one_line(line.text))
     return "\n".join(kept)
+
+
+@lru_cache(maxsize=1024)
+def _on_one_line(text: str) -> str:
+    """Cached, because most lines are the same from second to second."""
+    return " ".join(text.split())
 
 
 def position(lon_deg: float, lat_deg: float) -> str:

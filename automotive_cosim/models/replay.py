@@ -13,8 +13,8 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import ModelError, UnknownNameError, UserError
-from automotive_cosim.formats.files import parse_json
-from automotive_cosim.formats.layout import STEPS
+from automotive_cosim.formats.files import opened, parse_json
+from automotive_cosim.formats.layout import steps_in
 from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply, digest
 
@@ -73,7 +73,7 @@ class Replay:
         Raises:
             UserError: there is no readable record, or it has no answers of a model.
         """
-        path = folder / STEPS
+        path = steps_in(folder)
         try:
             stages = list(_stages(path))
             answers = [(stage["asked"], ModelReply(**stage["reply"])) for stage in stages if stage["reply"]]
@@ -131,6 +131,6 @@ def text_digest(messages: Sequence[ChatMessage]) -> str:
 
 
 def _stages(path: Path) -> Iterator[Json]:
-    with path.open(encoding="utf-8") as lines:
+    with opened(path) as lines:
         for line in lines:
             yield from parse_json(line)["stages"]

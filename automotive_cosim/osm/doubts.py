@@ -38,6 +38,15 @@ def shortened(line: str) -> str:
     return _MANY.sub(lambda numbers: f"{numbers[1]} and {numbers[2].count(',')} more", line)
 
 
+def by_kind(lines: Iterable[str]) -> Iterator[str]:
+    """One line for all that differ by their numbers and the values of tags alone."""
+    kinds: dict[str, list[str]] = {}
+    for line in lines:
+        kinds.setdefault(re.sub(r"=[^\s,]+", "=…", line.partition(": ")[0]), []).append(line)
+    for kind, alike in kinds.items():
+        yield shortened(alike[0]) if len(alike) == 1 else f"{kind}: {len(alike)} forms; import.json has all"
+
+
 def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, country: str) -> Iterator[str]:
     """Everything about access, direction, barriers, turns, lanes and limits that somebody should look at."""
     for land, beyond in extract.other_side.items():

@@ -76,6 +76,7 @@ class DriveSetup(DriveSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVa
             return row
         return replace(
             row,
+            country=session.moments[0].context.country,
             channels=tuple(sorted(session.setup.channels)),
             calls=answers.calls,
             thought_s=round(answers.thought_s, 3),

@@ -22,6 +22,8 @@ class DriveTrialRow(TrialRow):
     family: str
     """Family of drives that it was drawn from."""
     season: str
+    country: str = ""
+    """Country at departure; empty if the place is unknown, and in earlier rows."""
     settings: Annotated[DriveSettings, InColumns("set")] = AS_SCRIPTED
     """What was set otherwise than the family's script has it."""
     score: Annotated[Score | None, InColumns("score")] = None

@@ -5,6 +5,7 @@ The folder is created when the agent takes over; an earlier failure leaves none.
 
 from __future__ import annotations
 
+import gzip
 import json
 import platform
 from contextlib import suppress
@@ -22,7 +23,15 @@ from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.contracts import KMH_PER_MPS, Json
 from automotive_cosim.episode.session import JudgedSession
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, road_view, screenshot
+from automotive_cosim.formats.layout import (
+    OF_A_TRIAL,
+    PACKED_STEPS,
+    SCREENSHOTS,
+    STEPS,
+    TRIAL,
+    road_view,
+    screenshot,
+)
 from automotive_cosim.formats.writing import (
     add_line,
     check_writable,
@@ -139,6 +148,10 @@ class Recorder(TrialObserver):
         self.lines = self._trial.lines(self._session, row, told, self._thoughts)
         self.judged = self._trial.judged(self._session)
         self.close()
+        if self.folder is not None and self._session.observation.on_watch:
+            steps = self.folder / STEPS
+            write_whole(self.folder / PACKED_STEPS, gzip.compress(steps.read_bytes(), mtime=0))
+            remove(steps)
         if self.has_begun:
             self._write({"row": as_json(row), **self.lines[-1], "manifest": self._manifest()})
 
@@ -174,10 +187,11 @@ class Recorder(TrialObserver):
             with drafted(screenshot(self.folder, step.number)) as file:
                 Image.fromarray(shot.screenshot).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
             self._pictured = step.number, shot.screenshot
-        seen = shot.session.observation.camera
-        camera = shot.session.world.view() if seen is None else seen
-        with drafted(road_view(self.folder, step.number)) as file:
-            Image.fromarray(camera).save(file, "JPEG", quality=VIEW_QUALITY)
+        seen = shot.session.observation
+        if not seen.on_watch or seen.camera is not None:  # a drive has hundreds of steps
+            camera = shot.session.world.view() if seen.camera is None else seen.camera
+            with drafted(road_view(self.folder, step.number)) as file:
+                Image.fromarray(camera).save(file, "JPEG", quality=VIEW_QUALITY)
         told, begins = step.as_json(), "hand-over"
         if shot.session.observation.on_watch:
             told["context"], begins = shot.session.observation.context or "", "departure"  # as the agent was told

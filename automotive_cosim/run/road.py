@@ -9,8 +9,9 @@ line says ``format`` and what is run; every other line has one of these keys:
     ground     [[kind, [x, y, x, y, …]], …]                               outlines of green, water and buildings
     vehicles   [[number, id, class, length, width], …]                    before a vehicle is first seen
     at_s       one second of the drive:
-               seen       [[number, x, y, heading, speed in m/s, signals], …]; x and y of the front bumper; the car
-                          under test is ``ego``; signals are the bits of ``contracts.SumoSignal``
+               seen       [[number, …], [x, …], [y, …], [heading, …], [speed, …], [signals, …]], in cm, tenths of a
+                          degree and cm/s, as ``SeenColumns`` says; x and y of the front bumper; the car under test
+                          is ``ego``; signals are the bits of ``contracts.SumoSignal``
                lights     {light: state} of those that have changed; a lane's ``place`` is that of its letter
                speed_kmh, limit_kmh, speed_unit (of the signs), road, local_time, sun_deg (elevation; null without a
                place), weather_code (WMO)
@@ -19,16 +20,19 @@ line says ``format`` and what is run; every other line has one of these keys:
                events     [text, …]
     baseline   [[at_s, x, y, heading, speed], …]                          the car in the baseline run, once judged
 
-The file is written during the drive; after a kill, it can be read up to the last complete line.
+The file is written during the drive; after a kill, it can be read up to the last complete line. In format 1,
+``seen`` had a row for each vehicle, ``[number, x, y, heading, speed, signals]`` in m and m/s.
 """
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from automotive_cosim.contracts import (
     GroundArea,
@@ -45,8 +49,72 @@ from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import json_lines, open_file, opened
 from automotive_cosim.formats.layout import PICTURES, ROAD
 
-FORMAT = 1
+FORMAT = 2
+FORMER = 1
 PACKED = b"\x1f\x8b"
+_UNIT = 2**20
+_SINES = tuple(round(_UNIT * math.sin(math.radians(tenth / 10))) for tenth in range(3600))
+"""Whole numbers, so that every machine expects the same."""
+SeenRow = list[Any]
+"""``[number, x, y, heading, speed, signals]`` in m, degrees and m/s."""
+
+
+class SeenColumns:
+    """The vehicles of successive seconds as columns of small whole numbers, which take half the room.
+
+    Numbers are told as steps from the one before. A vehicle that was also seen the second before is told by what
+    has changed: heading, speed and signals, and how far it is from where heading and the mean of both speeds lead.
+    """
+
+    def __init__(self) -> None:
+        """Before the first second."""
+        self._before: dict[int, tuple[int, int, int, int, int]] = {}
+
+    def packed(self, rows: Sequence[SeenRow]) -> list[list[int]]:
+        """The columns of the next second."""
+        columns: list[list[int]] = [[], [], [], [], [], []]
+        last, now = 0, {}
+        for number, x_m, y_m, heading_deg, speed_mps, signals in rows:
+            x, y, speed = round(100 * x_m), round(100 * y_m), round(100 * speed_mps)
+            heading = round(10 * heading_deg) % 3600
+            x0, y0, heading0, speed0, signals0 = self._expected(number, heading, speed)
+            row = number - last, x - x0, y - y0, heading - heading0, speed - speed0, signals - signals0
+            for column, value in zip(columns, row, strict=True):
+                column.append(value)
+            last, now[number] = number, (x, y, heading, speed, signals)
+        self._before = now
+        return columns
+
+    def unpacked(self, columns: Sequence[Sequence[int]]) -> list[SeenRow]:
+        """The rows of the next second.
+
+        Raises:
+            ValueError, TypeError, LookupError: they are not columns of such numbers.
+        """
+        rows: list[SeenRow] = []
+        number, now, before = 0, {}, self._before
+        for step, x, y, heading, speed, signals in zip(*columns, strict=True):
+            number += step
+            if (known := before.get(number)) is not None:
+                heading += known[2]
+                speed += known[3]
+                signals += known[4]
+                way = known[3] + speed
+                x += known[0] + way * _SINES[heading] // (2 * _UNIT)
+                y += known[1] + way * _SINES[heading - 2700] // (2 * _UNIT)
+            now[number] = x, y, heading, speed, signals
+            rows.append([number, x / 100, y / 100, heading / 10, speed / 100, signals])
+        self._before = now
+        return rows
+
+    def _expected(self, number: int, heading: int, speed: int) -> tuple[int, int, int, int, int]:
+        known = self._before.get(number)
+        if known is None:
+            return 0, 0, 0, 0, 0
+        way = known[3] + speed
+        x, y = (way * _SINES[at] // (2 * _UNIT) for at in (heading, heading - 2700))
+        return known[0] + x, known[1] + y, *known[2:]
+
 
 GroundLine = tuple[tuple[float, float], ...]
 
@@ -162,7 +230,7 @@ def _record(path: Path) -> RoadRecord:
 
 
 def read_road(path: Path) -> Iterator[Json]:
-    """The lines of a file, or those written before a kill.
+    """The lines of a file, or those written before a kill; ``seen`` has a row for each vehicle (``SeenRow``).
 
     Raises:
         UserError: it cannot be read, or has another format.
@@ -172,13 +240,15 @@ def read_road(path: Path) -> Iterator[Json]:
             if (head := file.read(2)) and head != PACKED:
                 raise ValueError("it is not packed")
         with opened(path, growing=True) as file:
-            begun = False
+            form, rows = None, SeenColumns()
             for entry in json_lines(file, bounds.ROAD_VALUES, growing=True):
-                if not begun and entry.get("format") != FORMAT:
-                    raise UserError(f"{path} has format {entry.get('format')!r}; this version reads {FORMAT}")
-                begun = True
+                form = form or entry.get("format")
+                if form not in (FORMAT, FORMER):
+                    raise UserError(f"{path} has format {form!r}; this version reads {FORMAT} and {FORMER}")
+                if form == FORMAT and "seen" in entry:
+                    entry["seen"] = rows.unpacked(entry["seen"])
                 yield entry
-    except (OSError, ValueError, AttributeError) as error:
+    except (OSError, ArithmeticError, ValueError, TypeError, LookupError, AttributeError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
 
 

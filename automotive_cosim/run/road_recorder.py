@@ -32,7 +32,7 @@ from automotive_cosim.formats.writing import growing, make_folder
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.road import FORMAT
+from automotive_cosim.run.road import FORMAT, SeenColumns
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
@@ -150,6 +150,7 @@ class RoadWriter:
         self._lights: dict[str, str] = {}
         self._weather: Json | None = None
         self._numbers: dict[str, int] = {}
+        self._rows = SeenColumns()
         self._line(
             {
                 "format": FORMAT,
@@ -189,17 +190,19 @@ class RoadWriter:
         self._line(
             {
                 "at_s": round(snapshot.time_s - self._begin_s, 2),
-                "seen": [
+                "seen": self._rows.packed(
                     [
-                        self._numbers[each.vehicle_id],
-                        round(each.x_m, 2),
-                        round(each.y_m, 2),
-                        round(each.heading_deg, 1) % 360,
-                        round(each.speed_mps, 2),
-                        each.signals,
+                        [
+                            self._numbers[each.vehicle_id],
+                            round(each.x_m, 2),
+                            round(each.y_m, 2),
+                            round(each.heading_deg, 1) % 360,
+                            round(each.speed_mps, 2),
+                            each.signals,
+                        ]
+                        for each in snapshot.vehicles
                     ]
-                    for each in snapshot.vehicles
-                ],
+                ),
                 "lights": lights,
                 "speed_kmh": round(driving.speed_mps * KMH_PER_MPS, 1),
                 "limit_kmh": around.limit_kmh,

@@ -9,19 +9,19 @@ from automotive_cosim.cockpit.actions import action_in_words, parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json, read_whole_lines
-from automotive_cosim.formats.layout import PICTURES, ROAD, SCREENSHOTS, STEPS, TRIAL
+from automotive_cosim.formats.layout import PACKED_STEPS, PICTURES, ROAD, SCREENSHOTS, STEPS, TRIAL, steps_in
 from automotive_cosim.interface.trace import element
 from automotive_cosim.run.store import read_trace, trace_file
 
 FORMER = ("episode.json", "shown.jsonl")
 """Files in place of ``trial.json`` in what version 0.2 and earlier ones recorded, which this one does not read."""
-READ = (TRIAL, STEPS, ROAD, *FORMER)
+READ = (TRIAL, STEPS, PACKED_STEPS, ROAD, *FORMER)
 """Every file of a trial's folder that is read, except its screenshots."""
 
 
 def is_trial(folder: Path) -> bool:
     """Whether the steps of a trial are recorded in a folder."""
-    return (folder / STEPS).is_file()
+    return steps_in(folder).is_file()
 
 
 def trace_of(folder: Path) -> Path | None:
@@ -62,7 +62,7 @@ def read_steps(folder: Path) -> list[Json]:
     Raises:
         UserError: they cannot be read.
     """
-    path = folder / STEPS
+    path = steps_in(folder)
     try:
         lines = read_whole_lines(path) if path.is_file() else []
         if not lines and (trace := trace_of(folder)):

@@ -36,6 +36,8 @@ WHAT = ("drive", "scenario", "stage")
 """The factors that decide whether something can come about at all."""
 TRIES, MOST_KINDS = 5, 16
 """Drives after which something is said not to come about, and how many such combinations are tried."""
+STEPS = (0.4, 0.8, 0.2)
+"""By how much of their ranges instant and seed are moved where nothing comes due."""
 MENDS: tuple[tuple[str, FactorValue], ...] = (
     ("ahead_m", 300.0), ("ahead_m", 800.0), ("driver", "hurried"), ("density", 2.0), ("minutes", 12.0),
 )  # fmt: skip
@@ -140,6 +142,15 @@ class DueScreen:
     def is_due(self, point: SearchPoint) -> bool:
         """Whether something comes due at a point, or nobody can tell."""
         return not self.why_not(point)
+
+    def placed(self, point: SearchPoint) -> SearchPoint | None:
+        """The point, or one with another instant and seed, at which something comes due; None if none was found."""
+        others = [
+            {**point, **{name: self.space.factor(name).at((self.space.factor(name).unit(point[name]) + step) % 1.0)
+                         for name in ("stage_s", "seed") if name in point}}
+            for step in STEPS
+        ]  # fmt: skip
+        return next(filter(self.is_due, [point, *others]), None)
 
     def check(self, seed: int) -> Iterator[str]:
         """Tries what the space stages where, and says what cannot come about, and how to mend it.

@@ -14,7 +14,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, rounded
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
-from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
+from automotive_cosim.safety.hunt import NOMINAL, REPEATS, Hunt, MinimalFailure, Tried
 from automotive_cosim.safety.space import BINS, Factor, FactorRange, FactorValue, SearchPoint, label_of, said
 
 CONFIDENCE_WORDS = f"{100 * CONFIDENCE:.0f} %"
@@ -399,7 +399,7 @@ def sentence(found: Hunt, agent: str) -> str:
             f" From {counted(len(found.minimal), 'minimal failure')}." if found.minimal else " None reduced."
         )
     if any(not each.changed for each in found.minimal):
-        told_first = f"{agent} fails with everything nominal. Beside that, {told_first}"
+        told_first = f"{agent} fails with {NOMINAL}. Beside that, {told_first}"
     if bound.upper is None:
         return told_first
     where = "Where something is due in this space, the failure rate" if empty else "The failure rate in this space"

@@ -17,6 +17,8 @@ REPEATS = 3
 BISECTIONS = 4
 """Halvings between a number that fails and the nominal one: to a sixteenth of the distance."""
 
+NOMINAL = "everything nominal"
+"""What triggers a failure of the nominal point, in words."""
 MOST_STALE = 1000
 """Points in a row that were all known, after which a space of few points is taken to be used up."""
 MOST_BESIDE = 3
@@ -98,7 +100,7 @@ class MinimalFailure:
     def words(self, space: Space) -> str:
         """The conditions that trigger it."""
         if not self.changed:
-            return "everything nominal"
+            return NOMINAL
         told_all = []
         for name in self.changed:
             factor, value = space.factor(name), self.point[name]
@@ -146,7 +148,7 @@ def hunt(
     budget: int,
     *,
     most_failures: int = 5,
-    is_due: Callable[[SearchPoint], bool] = lambda point: True,
+    place: Callable[[SearchPoint], SearchPoint | None] = lambda point: point,
     tell: Callable[[Hunt], None] = lambda found: None,
 ) -> Hunt:
     """Searches a space.
@@ -158,8 +160,8 @@ def hunt(
         budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
             reductions come in addition: about thirty runs a failure.
         most_failures: how many failures are reduced; those that one of them explains are not.
-        is_due: whether something comes due at a point, as far as that is known without the agent; others are
-            passed over.
+        place: the point itself, or one near it at which something comes due; None if nothing does, as far as that
+            is known without the agent: such points are passed over.
         tell: called after each point.
 
     Returns:
@@ -187,10 +189,12 @@ def hunt(
         try:
             while at_once:
                 _reduce(run, at_once.pop(), most_failures)
-            if run.is_new(point) and passed < MOST_PASSED and not is_due(point):
-                passed, found.passed_over = passed + 1, found.passed_over + 1
-                sampler.tell(point, UNTOLD)
-                continue
+            if run.is_new(point) and passed < MOST_PASSED:
+                if (placed := place(point)) is None:
+                    passed, found.passed_over = passed + 1, found.passed_over + 1
+                    sampler.tell(point, UNTOLD)
+                    continue
+                point = placed
             passed = 0
             tried = run(Phase.SAMPLE, point, even=even)
             margin = tried.outcome.margin

@@ -165,8 +165,6 @@ class Space:
     rule: FailureRule = field(default_factory=FailureRule)
     about: str = ""
     """What happens, for human readers."""
-    occurs: str = ""
-    """The kind of event, or words of what the road tells, that shows that it has happened."""
     sources: tuple[str, ...] = ()
     """Where the situation and its figures come from; the rest of the ranges is our choice."""
 
@@ -215,7 +213,6 @@ class _SpaceTable:
     factors: dict[str, Any]
     failure: FailureRule = field(default_factory=FailureRule)
     about: str = ""
-    occurs: str = ""
     sources: tuple[str, ...] = ()
 
 
@@ -258,7 +255,7 @@ def read_space(path: Path) -> Space:
             raise UserError(f"{document.refused(('failure', 'events'), 'has an unknown kind')}: {unknown}")
     kinds = dict.fromkeys(kind for name in table.failure.events for kind in BRINGS.get(name, (name,)))
     rule = replace(table.failure, events=tuple(kinds))
-    return Space(made, rule, table.about, table.occurs, table.sources)
+    return Space(made, rule, table.about, table.sources)
 
 
 def _factor(document: Document, name: str, given: Any) -> Factor:
@@ -322,6 +319,8 @@ UNITS = {"_mm_h": "mm/h", "_min": "min", "_m": "m", "_s": "s", "_c": "°C"}
 
 def label_of(name: str) -> tuple[str, str]:
     """A factor's name in words, and its unit; empty without one."""
+    if name == "stage_s":  # beside the factor ``stage``
+        return "stage time", "s"
     end = next((end for end in UNITS if name.endswith(end)), "")
     return name.removesuffix(end).replace("_", " "), UNITS.get(end, "")
 

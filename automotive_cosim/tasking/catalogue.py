@@ -30,6 +30,7 @@ class Catalogue(Mapping[str, Task]):
     def __init__(self, folder: Path | None = None) -> None:
         """Empty, or with the tasks of a folder and then the user's own (``VARIABLE``), read at the first use."""
         self.folder = folder
+        self._read: dict[Path, dict[str, Task]] = {}
 
     @cached_property
     def _tasks(self) -> dict[str, Task]:
@@ -37,10 +38,26 @@ class Catalogue(Mapping[str, Task]):
         if self.folder is not None:
             with without_collection():
                 for path in shipped_files(self.folder):  # tests hold them to what is required of others
-                    found |= {task.id: task for task in shipped_tasks(path)}
+                    found |= self._of(path)
             if os.environ.get(VARIABLE):
                 _enter_own(found, Path(os.environ[VARIABLE]))
         return found
+
+    def _of(self, path: Path) -> dict[str, Task]:
+        """The tasks of a shipped file, read once."""
+        if path not in self._read:
+            self._read[path] = {task.id: task for task in shipped_tasks(path)}
+        return self._read[path]
+
+    def _alone(self, task_id: str) -> Task | None:
+        """A shipped task from its own file, as long as nobody has asked for all, which takes most of a second."""
+        if "_tasks" in vars(self) or self.folder is None or os.environ.get(VARIABLE):
+            return None
+        headed = f"\n[{task_id}]\n"
+        for path in shipped_files(self.folder):
+            if headed in path.read_text("utf-8"):
+                return self._of(path).get(task_id)
+        return None
 
     def add(self, *tasks: Task) -> None:
         """Adds tasks.
@@ -74,6 +91,8 @@ class Catalogue(Mapping[str, Task]):
         return tuple(task for task in self._tasks.values() if task.suite is suite)
 
     def __getitem__(self, task_id: str) -> Task:
+        if (task := self._alone(task_id)) is not None:
+            return task
         try:
             return self._tasks[task_id]
         except KeyError:

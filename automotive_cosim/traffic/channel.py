@@ -64,8 +64,8 @@ class MessageChannel:
         (length,) = _LENGTH.unpack(self._read(_LENGTH.size, waits_on))
         return pickle.loads(self._read(length, waits_on))
 
-    def send_socket(self, connection: socket.socket) -> None:
-        """Sends a socket to the process on the other side."""
+    def send_socket(self, connection: socket.socket | MessageChannel) -> None:
+        """Sends a socket, or that of a channel, to the process on the other side."""
         try:
             socket.send_fds(self._socket, [b"s"], [connection.fileno()])
         except OSError as error:

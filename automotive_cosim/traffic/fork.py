@@ -6,7 +6,6 @@ A copy is a fork, which takes milliseconds however long the warm-up took. SUMO's
 
 from __future__ import annotations
 
-import os
 import sys
 import threading
 from collections import Counter, OrderedDict
@@ -30,6 +29,7 @@ from automotive_cosim.errors import NO_FORK, SetupError, TrafficError
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
+from automotive_cosim.traffic.keeper import started
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
@@ -271,7 +271,7 @@ class _Source:
         self._warm: RemoteProcess | None
         self.network: RoadNetwork
         if alike is None:
-            self._warm, self.network = RemoteProcess.start(self._writing("warm"), progress, timeout_s)
+            self._warm, self.network = started(self._writing("warm"), progress, timeout_s)
         else:
             with alike._lock:
                 self._warm = alike._copied()
@@ -317,13 +317,7 @@ class _Source:
 
     def memory_bytes(self) -> int:
         """Memory of the warm process."""
-        if self._warm is None:
-            return 0
-        try:
-            pages = Path(f"/proc/{self._warm.pid}/statm").read_text(encoding="ascii").split()[1]
-        except OSError:  # it has died
-            return 0
-        return int(pages) * os.sysconf("SC_PAGE_SIZE")
+        return 0 if self._warm is None else self._warm.memory_bytes
 
     def _copied(self) -> RemoteProcess:
         """A copy of the warm process, which is started again if it turns out to have died."""
@@ -339,7 +333,7 @@ class _Source:
         """The warm process, started again if it has died."""
         if self._warm is None or self._warm.is_broken:
             self.close()
-            self._warm, _ = RemoteProcess.start(self._writing("warm"), None, self._timeout_s)
+            self._warm, _ = started(self._writing("warm"), None, self._timeout_s)
             for call, arguments in self._warm_calls:
                 self._warm.call(call, *arguments)
         return self._warm

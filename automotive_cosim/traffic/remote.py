@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import weakref
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -198,6 +199,27 @@ class RemoteProcess:
             raise kind.__new__(kind, text)  # the text is whole already
         return value
 
+    @classmethod
+    def taken(cls, channel: MessageChannel, pid: int, timeout_s: float) -> RemoteProcess:
+        """A process that somebody else hands over through a channel."""
+        process = cls(MessageChannel(channel.receive_socket()), _Complaints(), timeout_s)
+        process.pid = pid
+        return process
+
+    def hand_over(self, channel: MessageChannel) -> None:
+        """Hands it to whoever is on the other side of a channel; it is no longer this process's."""
+        channel.send_socket(self._channel)
+        self._channel.close()
+
+    @property
+    def memory_bytes(self) -> int:
+        """Memory of the process; 0 if the platform does not say, or it has died."""
+        try:
+            pages = Path(f"/proc/{self.pid}/statm").read_text(encoding="ascii").split()[1]
+        except OSError:
+            return 0
+        return int(pages) * os.sysconf("SC_PAGE_SIZE")
+
     def close(self) -> None:
         """Ends the process and waits for it; may be called again."""
         if not self._broken:
@@ -246,11 +268,15 @@ def _end(channel: MessageChannel, popen: subprocess.Popen[bytes]) -> None:
         popen.wait()
 
 
+def environment(given: Mapping[str, str]) -> dict[str, str]:
+    """The variables that a simulation's process gets, from some."""
+    kept = {name: value for name, value in given.items() if name not in DROPPED_VARIABLES}
+    path = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path)
+    return LARGE_PAGES | kept | ONE_THREAD | {"PYTHONPATH": path}
+
+
 def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> subprocess.Popen[bytes]:
     """Starts ``process`` with one end of the connection and a controlled environment."""
-    environment = {name: value for name, value in os.environ.items() if name not in DROPPED_VARIABLES}
-    environment = LARGE_PAGES | environment | ONE_THREAD
-    environment["PYTHONPATH"] = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path)
     command = [
         sys.executable,
         "-P",
@@ -261,7 +287,7 @@ def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> subpro
     ]
     return subprocess.Popen(
         command,
-        env=environment,
+        env=environment(os.environ),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=complaints,

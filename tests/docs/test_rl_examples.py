@@ -11,11 +11,12 @@ from pathlib import Path
 
 import gymnasium
 import pytest
+from PIL import Image
 
 TOP = Path(__file__).parents[2]
 FOLDER = TOP / "docs/examples/rl"
 PYTHON = os.environ.get("AUTOMOTIVE_COSIM_RL", sys.executable)
-HERE = "async_vector.py"
+HERE, LEARNS = "async_vector.py", "ten_minutes.py"
 NEEDS = {
     "cleanrl_loop.py": "torch",
     "rllib_ppo.py": "torch, ray.rllib",
@@ -25,7 +26,7 @@ NEEDS = {
 
 
 def test_every_example_is_tried():
-    assert {path.name for path in FOLDER.glob("*.py")} == {HERE, *NEEDS}
+    assert {path.name for path in FOLDER.glob("*.py")} == {HERE, LEARNS, *NEEDS}
 
 
 @pytest.mark.slow
@@ -36,6 +37,19 @@ def test_the_one_that_needs_nothing_more_runs_to_its_end(monkeypatch, capsys):
     monkeypatch.setattr(gymnasium, "make_vec", lambda *names, vectorization_mode, **more: make_vec(*names, **more))
     runpy.run_path(str(FOLDER / HERE), run_name="__main__")
     assert capsys.readouterr().out.startswith("0.")
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_the_one_that_learns_measures_and_films_two_policies(monkeypatch, tmp_path, capsys):
+    """With two environments of eight steps, and no more than one update."""
+    text = (FOLDER / LEARNS).read_text("utf-8").replace("BATCH = 8, 32, 8,", "BATCH = 2, 8, 1,")
+    monkeypatch.setattr(sys, "argv", [LEARNS, str(tmp_path), "0.001", "2"])
+    exec(compile(text, LEARNS, "exec"), {"__name__": "__main__"})
+    told = capsys.readouterr().out.splitlines()
+    assert [line.partition(":")[0] for line in told if "unseen" in line] == ["before", "after"]
+    with Image.open(tmp_path / "ten_minutes.webp") as film:
+        assert film.n_frames > 6
 
 
 @pytest.mark.slow

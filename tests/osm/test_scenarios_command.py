@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 from automotive_cosim import scenarios
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import ImportMapError, UnknownNameError
+from automotive_cosim.osm.doubts import by_kind
 
 
 @pytest.mark.sumo
@@ -35,6 +36,14 @@ def test_import_makes_a_folder_and_prints_the_figures(
     assert told[0] == "reading the map", "a log has the progress too"
     assert any(line.startswith("testing whether traffic flows at scale 1, in steps of 1 s") for line in told)
     assert len(told) == len(set(told))
+
+
+def test_what_differs_by_numbers_and_values_alone_is_one_line() -> None:
+    alike = [f"turn arrows not followed: turn:lanes={value}: way 1" for value in ("left", "right")]
+    of_lanes = [f"turn:lanes={value} on 2 lanes, left out: way 2" for value in ("left|right", "through")]
+    told = list(by_kind([alike[0], "lanes=1.5, left out: way 3", alike[1], *of_lanes]))
+    assert [line.partition(":")[0] for line in told] == ["turn arrows not followed", "lanes=1.5, left out", "turn"]
+    assert sum("2 forms; import.json has all" in line for line in told) == 2
 
 
 def test_import_passes_errors_on(tmp_path: Path) -> None:

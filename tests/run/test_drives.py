@@ -313,6 +313,7 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     assert [round(line["at_s"], 1) for line in road] == timeline["time_s"][1:]
     assert [line["speed_kmh"] for line in road] == timeline["speed_kmh"][1:]
     recorded = read_steps(tmp_path / "drive")
+    assert [path.name for path in (tmp_path / "drive").glob("steps*")] == ["steps.jsonl.gz"]
     for name in ("step", "action", "thought_s", "feedback", "sha256"):
         assert [line[name] for line in recorded] == [step[name] for step in steps]
     told = read_trial(tmp_path / "drive")

@@ -6,6 +6,7 @@ import gzip
 import json
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from automotive_cosim.agents import make_agent
@@ -13,7 +14,7 @@ from automotive_cosim.contracts import GroundArea, GroundKind, LaneShape, RoadNe
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import ROAD
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.road import read_record, read_road
+from automotive_cosim.run.road import SeenColumns, read_record, read_road
 from automotive_cosim.run.road_recorder import RoadRecorder, RoadWriter, along
 from automotive_cosim.run.trial import run_trial
 
@@ -55,7 +56,7 @@ def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
 
 
 @pytest.mark.parametrize(
-    "content", [b"", b"not gzip", gzip.compress(b'{"format":2}\n', mtime=0), gzip.compress(b"[]\n", mtime=0)]
+    "content", [b"", b"not gzip", gzip.compress(b'{"format":3}\n', mtime=0), gzip.compress(b"[]\n", mtime=0)]
 )
 def test_another_file_is_refused_in_one_line(tmp_path, content):
     path = tmp_path / ROAD
@@ -65,6 +66,47 @@ def test_another_file_is_refused_in_one_line(tmp_path, content):
         return
     with pytest.raises(UserError, match=r"road\.jsonl\.gz"):
         read_record(path)
+
+
+def test_the_seconds_of_a_drive_come_back_as_they_were_told_and_so_do_those_of_the_former_format(tmp_path):
+    rng = np.random.default_rng(0)
+    seconds, packer = [], SeenColumns()
+    for _ in range(50):  # vehicles come, go and come again, turn through north and stand
+        seen = sorted(rng.choice(30, 12, replace=False).tolist())
+        seconds.append(
+            [
+                [
+                    number,
+                    round(float(rng.normal(0, 3000)), 2),
+                    round(float(rng.normal(0, 3000)), 2),
+                    round(float(rng.integers(3600)) / 10, 1),
+                    round(float(max(0.0, rng.normal(5, 10))), 2),
+                    int(rng.integers(64)),
+                ]
+                for number in seen
+            ]
+        )
+    for form, told in (1, lambda rows: rows), (2, packer.packed):
+        lines = [{"format": form}, *({"at_s": 0.0, "seen": told(rows)} for rows in seconds)]
+        (tmp_path / ROAD).write_bytes(gzip.compress("".join(json.dumps(line) + "\n" for line in lines).encode()))
+        assert [line["seen"] for line in read_road(tmp_path / ROAD) if "seen" in line] == seconds
+
+
+@pytest.mark.parametrize(
+    "seen",
+    [
+        [[1]],
+        [[1, 2], [1], [1], [1], [1], [1]],
+        [["a"], [1], [1], [1], [1], [1]],
+        [[1], [10**400], [1], [1], [1], [1]],
+        [[1], [1], [1], [None], [1], [1]],
+        7,
+    ],
+)
+def test_columns_that_are_none_are_refused(tmp_path, seen):
+    (tmp_path / ROAD).write_bytes(gzip.compress(json.dumps({"format": 2, "seen": seen}).encode() + b"\n"))
+    with pytest.raises(UserError, match="cannot read"):
+        list(read_road(tmp_path / ROAD))
 
 
 def test_a_line_that_is_not_json_is_refused(tmp_path):

@@ -212,6 +212,20 @@ def test_a_drive_alone_has_a_report(tmp_path: Path) -> None:
     assert "of 1 trial in which something was due" in page.read_text("utf-8")
 
 
+def test_a_minimal_case_contradicts_although_no_sample_failed(tmp_path: Path) -> None:
+    case = {"words": "everything nominal", "why": "tunnel missed", "act": "no act at 0:12", "beside": ""}
+    findings = {"failures": [case], "failure_rate_upper": 0.4, "unseen_rate_upper": 0.4, "pairs_covered": 0}
+    rule = asdict(FailureRule(events=("tunnel",)))
+    subject = replace(read_subject(run(tmp_path / "runs", 0)), findings=findings | {"rule": rule})
+    assert claims(subject).parts[0].status == "contradicted"
+    assert shown(subject).startswith(
+        "asurada fails with everything nominal. Beside that, asurada failed in none of 6 "
+    )
+    (section,) = [section for section in dossier(subject).sections if section.name == "failures"]
+    assert "no act at 0:12" in section.tables[0].rows[0]
+    assert not section.told
+
+
 def test_an_agent_must_be_named_if_there_are_several(tmp_path: Path) -> None:
     folder = run(tmp_path / "runs", 0, ("asurada", "m3a", "rule-perfect"))
     with pytest.raises(UserError, match="several agents; give --agent with one of asurada, m3a, rule-perfect"):

@@ -232,7 +232,14 @@ def test_points_at_which_nothing_comes_due_are_given_to_no_agent(sampler: str) -
         return TriedOutcome(margin(point), margin(point) < 0, "late", "t")
 
     blind, looking = (
-        hunt(SPACE, evaluate, make_sampler(sampler, SPACE, 32, 1), 32, most_failures=0, is_due=looks)
+        hunt(
+            SPACE,
+            evaluate,
+            make_sampler(sampler, SPACE, 32, 1),
+            32,
+            most_failures=0,
+            place=lambda point, looks=looks: point if looks(point) else None,
+        )
         for looks in (lambda point: True, is_due)
     )
     due = [sum(each.outcome.margin is not None for each in found.samples) for found in (blind, looking)]
@@ -246,7 +253,7 @@ def test_points_at_which_nothing_comes_due_are_given_to_no_agent(sampler: str) -
 
 
 def test_a_search_where_nothing_comes_due_goes_on_all_the_same() -> None:
-    found = hunt(SPACE, judged(margin), RandomSampler(SPACE, 5, default_rng(0)), 5, is_due=lambda point: False)
+    found = hunt(SPACE, judged(margin), RandomSampler(SPACE, 5, default_rng(0)), 5, place=lambda point: None)
     assert found.run == 5
 
 

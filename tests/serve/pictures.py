@@ -67,7 +67,8 @@ def main() -> None:
     wide, high = map(int, asked.size.split("x"))
     colours = "dark" if asked.dark else "light"
     window = {"viewport": {"width": wide, "height": high}, "color_scheme": colours, "has_touch": asked.touch}
-    wanted = asked.only.split(",") if asked.only else list(PICTURES)
+    kept = [name for name in PICTURES if asked.to != IMAGES or (IMAGES / f"{name}.webp").exists()]
+    wanted = asked.only.split(",") if asked.only else kept
     with opened(asked.records, window) as studio:
         for name in wanted:
             shown = PICTURES[name](studio)

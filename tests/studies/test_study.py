@@ -12,6 +12,7 @@ import shutil
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from statistics import median
 
 import pytest
 from typer.testing import CliRunner
@@ -33,6 +34,7 @@ from automotive_cosim.studies.commands import app
 from automotive_cosim.studies.reroute import batch
 from automotive_cosim.studies.reroute.batch import REROUTE
 from automotive_cosim.studies.reroute.data import futures
+from automotive_cosim.studies.reroute.decisions import attributed
 from automotive_cosim.studies.reroute.demand import read_demand
 from automotive_cosim.studies.reroute.drive import NO_ROOM
 from automotive_cosim.studies.reroute.effects import effects
@@ -99,6 +101,16 @@ def page(folder: Path) -> str:
     return write_study(folder).read_text(encoding="utf-8")
 
 
+def test_what_a_decision_changed_is_told_and_called_chance_if_it_was_driven_once(folder: Path) -> None:
+    study = Study.read(folder)
+    told = attributed(folder, "")
+    assert len(told) == sum(len(each.branches) for row in study.rows for each in row.decisions)
+    assert all(each.is_neutral and "driven once" in each.act for each in told)
+    assert any("may be chance: " in each.effect for each in told)
+    with pytest.raises(UserError, match="begins with 'x'; choices"):
+        attributed(folder, "x")
+
+
 def test_order_and_number_of_workers_do_not_show(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
     REROUTE.run(plan, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "two") == steady(folder)
@@ -116,6 +128,13 @@ def test_replicates_are_rows_that_come_out_equal_wherever_they_ran(two_ways: Dra
     study = Study.read(tmp_path / "one")
     assert {row.fresh for row in study.rows} == {Fresh.SEED}
     for point in study.decisions:
+        told = attributed(tmp_path / "one", point.id)
+        assert {each.draws for each in told} == {point.decision.draws}
+        for number, each in enumerate(told):
+            gains_s = [point.decision.gain(draw, number).time_s for draw in range(point.decision.draws)]
+            found_s, noise_s = {**each.changed, **each.chance}.get("arrival_s", (0.0, 0.0))
+            assert abs(median(gains_s) + found_s) <= 1.0 or "arrival_s" in each.chance
+            assert "arrival_s" not in each.changed or abs(found_s) > noise_s
         seeds = [each.seed for each in point.decision.replicates]
         assert len(set(seeds)) == 2
         gains = [point.decision.gain(draw, 0) for draw in range(3)]

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
+import stat
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import replace
 from pathlib import Path
 from threading import Timer
 
 import pytest
 
-from automotive_cosim.errors import SetupError, TrafficError
+from automotive_cosim.errors import ScenarioError, SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario, load
-from automotive_cosim.traffic import remote, sumo
+from automotive_cosim.traffic import keeper, remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.channel import MessageChannel
 from automotive_cosim.traffic.fork import Forked
 from tests.traffic.calls import run_on, seen, watch
 from tests.traffic.in_process import InProcess
@@ -204,6 +207,7 @@ SCRIPT = """
 import sys
 from automotive_cosim.scenarios import load
 from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.channel import MessageChannel
 from automotive_cosim.traffic.fork import Forked
 grid = load("grid")
 simulation = Forked(grid)
@@ -339,3 +343,97 @@ def test_a_crash_while_loading_names_the_scenario(variant: Variant, capfd: pytes
     with pytest.raises(TrafficError, match=rf"SIGSEGV.*{scenario.config.name}"):
         Forked(scenario)
     assert capfd.readouterr() == ("", "")
+
+
+# --- the keeper -------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def own_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """Where the keeper of this test listens, which ends with it."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    yield keeper._home()
+    with suppress(SetupError):
+        keeper.keep(0)
+    while keeper._CHILDREN:
+        keeper._CHILDREN.pop().wait(10)
+
+
+def test_later_commands_fork_from_what_a_keeper_has_warmed_and_drive_alike(
+    own_home: Path, forked: Forked, variant: Variant, hurried: EgoPlan
+) -> None:
+    keeper.keep(5)
+    scenario = variant(lambda folder: None)
+    assert stat.S_IMODE(own_home.stat().st_mode) == 0o700
+    told: list[float] = []
+    pids, warmed = [], []
+    with closing(forked.depart(hurried)) as here:
+        expected = here.advance(60.0)
+    for _ in range(2):
+        with closing(Forked(scenario, 1, lambda done_s, total_s: told.append(done_s))) as copy:
+            with closing(copy.depart(hurried)) as there:
+                assert there.advance(60.0) == expected
+            assert copy._source._warm is not None
+            pids.append(copy._source._warm.pid)
+        warmed.append(len(told))
+    assert warmed[0] == warmed[1] > 0  # the second had nothing to warm up
+    assert [line.split(":")[0] for line in keeper.keep(5)] == ["variant, seed 1"]
+    net = scenario.folder / "grid.net.xml"
+    net.write_text(net.read_text(encoding="utf-8") + "<!-- changed -->\n", encoding="utf-8")
+    with closing(Forked(scenario, 1)):
+        assert len(keeper.keep(5)) == 2
+    scenario.config.write_text("<configuration/>", encoding="utf-8")
+    with pytest.raises(ScenarioError):
+        Forked(scenario, 1)
+    keeper.keep(0)
+    assert gone(pids)
+    end_s = time.monotonic() + 10
+    while list(own_home.iterdir()) and time.monotonic() < end_s:
+        time.sleep(0.05)
+    assert not list(own_home.iterdir())
+
+
+@pytest.mark.parametrize("kind", ["open", "link", "file"])
+def test_no_keeper_is_used_in_a_folder_that_others_can_enter_or_made(own_home: Path, kind: str) -> None:
+    if kind == "open":
+        own_home.mkdir(mode=0o755)
+    elif kind == "link":
+        own_home.symlink_to(own_home.parent)
+    else:
+        own_home.touch()
+    with pytest.raises(SetupError, match="is not a folder of your own"):
+        keeper.keep(5)
+
+
+READ: list[bool] = []
+
+
+def note() -> None:
+    READ.append(True)
+
+
+class _Told:
+    """Notes whether anybody has read it."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return note, ()
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_a_keeper_reads_nothing_of_another_user(monkeypatch: pytest.MonkeyPatch, own: bool) -> None:
+    READ.clear()
+    ours, theirs = socket.socketpair()
+    if not own:
+        user = os.getuid() + 1
+        monkeypatch.setattr(keeper.os, "getuid", lambda: user)
+    with ours:
+        MessageChannel(ours).send(("keep", _Told()))
+        keeper._Keeper(1)._answer(theirs)
+    assert bool(READ) is own
+
+
+def test_a_keeper_is_needed_for_its_minutes_after_the_last_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    one, now_s = keeper._Keeper(5), time.monotonic()
+    for later_s, needed in ((290, True), (310, False)):
+        monkeypatch.setattr(keeper.time, "monotonic", lambda later_s=later_s: now_s + later_s)
+        assert one._is_needed() is needed

@@ -60,7 +60,8 @@ class Tracker:
     def __init__(self, kinds: Mapping[str, EventKind]) -> None:
         """Tracks events of these kinds."""
         self._kinds = kinds
-        self._latest: dict[tuple[str, str, bool], DriveEvent] = {}
+        self._latest: dict[str, dict[tuple[str, bool], DriveEvent]] = {name: {} for name in kinds}
+        """By kind, then by subject and whether it only looks like one."""
         self.events: list[DriveEvent] = []
         """All events so far, by the instant at which they became observable."""
 
@@ -68,18 +69,19 @@ class Tracker:
         """Takes the last moment of a drive, and returns the events that became observable at it."""
         now_s = drive[-1].time_s
         opened = []
-        for kind in self._kinds.values():
-            seen = {(kind.name, sighting.subject, sighting.lookalike): sighting for sighting in kind.sight(drive)}
+        for name, kind in self._kinds.items():
+            latest = self._latest[name]
+            seen = {(sighting.subject, sighting.lookalike): sighting for sighting in kind.sight(drive)}
             for key, sighting in seen.items():
-                event = self._latest.get(key)
+                event = latest.get(key)
                 if event is None or (event.ended and now_s - event.last_s > REOPEN_S):
-                    event = self._open(kind, sighting, now_s)
+                    event = latest[key] = self._open(kind, sighting, now_s)
                     opened.append(event)
                 self._update(event, kind, sighting, now_s)
-            for key, event in self._latest.items():
-                if key[0] == kind.name and key not in seen and not event.ended:
+            for key, event in latest.items():
+                if not event.ended and key not in seen:
                     event.due_since_s = None
-                    if (*key[:2], True) in seen:
+                    if (key[0], True) in seen:
                         event.eased_s = now_s
                     event.ended = now_s - event.last_s > CLOSE_S
         return tuple(opened)
@@ -95,7 +97,6 @@ class Tracker:
             last_s=now_s,
             value=sighting.value,
         )
-        self._latest[kind.name, sighting.subject, sighting.lookalike] = event
         self.events.append(event)
         return event
 

@@ -78,8 +78,8 @@ def _preventable(subject: Subject) -> Claim:
 
 
 def _status(subject: Subject, every: bool) -> str:
-    """What a claim is if every one of the cases is for it, or not."""
-    if not every:
+    """What a claim is if every one of the cases is for it, or not; a minimal case of a search is against it."""
+    if not every or (subject.findings or {}).get("failures"):
         return "contradicted"
     return "supported" if failing(subject)[2] < ENOUGH else "limited"
 

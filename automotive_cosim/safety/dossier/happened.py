@@ -131,7 +131,7 @@ def failures(subject: Subject) -> Section:
                 heads=3,
             )
         )
-    else:
+    elif not made:
         told.append(f"None of {counted(len(subject.due), 'trial')} in which something was due failed.")
     made += [listed for in_space in (True, False) if (listed := _faults(subject, in_space=in_space)).rows]
     return Section("failures", "Failures", tuple(told), tuple(made))

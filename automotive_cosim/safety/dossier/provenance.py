@@ -7,7 +7,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.files import file_sha256
-from automotive_cosim.formats.layout import STEPS, TRIAL
+from automotive_cosim.formats.layout import PACKED_STEPS, STEPS, TRIAL
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.dossier.subject import Section, Subject, fact_table
 from automotive_cosim.safety.page import FINDINGS
@@ -15,7 +15,7 @@ from automotive_cosim.safety.page import FINDINGS
 
 def hashes(folder: Path) -> list[tuple[str, str]]:
     """SHA-256 of the files of a run, and one for all traces together."""
-    names = "manifest.json", "episodes.jsonl", "search.json", FINDINGS, TRIAL, STEPS
+    names = "manifest.json", "episodes.jsonl", "search.json", FINDINGS, TRIAL, STEPS, PACKED_STEPS
     found = [(name, file_sha256(folder / name)) for name in names if (folder / name).is_file()]
     traces = sorted((folder / "traces").glob("*"))
     if traces:

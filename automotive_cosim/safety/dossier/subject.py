@@ -22,6 +22,7 @@ from automotive_cosim.run.row import from_json
 from automotive_cosim.run.trial_folder import is_trial, read_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.safety.findings import of_due
+from automotive_cosim.safety.hunt import NOMINAL
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.page import FINDINGS
 from automotive_cosim.safety.space import FailureRule
@@ -238,6 +239,8 @@ def sentence(subject: Subject) -> str:
     hours = f"{subject.hours:.2f} h driven"
     told = of_due(f"{subject.agent} failed in", failed, due, empty)
     told = f"{told[:-1]} ({hours})."
+    if any(each["words"] == NOMINAL for each in (subject.findings or {}).get("failures", ())):
+        told = f"{subject.agent} fails with {NOMINAL}. Beside that, {told}"
     if subject.again:
         told += f" {counted(subject.again, 'more run')} repeated and reduced failures, and are in no total."
     if subject.rule is not None and subject.drives:

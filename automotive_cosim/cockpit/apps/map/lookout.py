@@ -78,7 +78,7 @@ def sights(state: State) -> tuple[Sight, ...]:
     if not state.lookout or state.outside is None:
         return ()
     driving = state.outside.driving
-    around = (*_behind(state, driving), *_ahead(state, driving))
+    around = (*_behind(state, driving), *_ahead(state, driving, _starts_m(state, driving)))
     return (*_aboard(state), *sorted(around, key=lambda sight: sight.distance_m or 0.0))[:LINES]
 
 
@@ -132,7 +132,7 @@ def _behind(state: State, driving: DrivingState) -> Iterator[Sight]:
             yield Sight(SightKind.VEHICLE_BEHIND, said, follower.gap_m, closing_mps)
 
 
-def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
+def _ahead(state: State, driving: DrivingState, starts_m: Mapping[str, float]) -> Iterator[Sight]:
     signals, ahead = state.signals, driving.ahead
     gap_m = signals[ADAS.LEADER_DISTANCE]
     if gap_m is not None:
@@ -150,19 +150,19 @@ def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
                 "Limit {speed} in {distance}", speed=f"{speed(signals, kmh)} {speed_unit(signals)}", distance=far
             )
         )
-        yield Sight(SightKind.LIMIT, told, limit_m, kmh, _limit_hours(state, driving, limit, limit_m))
+        yield Sight(SightKind.LIMIT, told, limit_m, kmh, _limit_hours(state, starts_m, limit, limit_m))
     if driving.road.in_tunnel:
         yield Sight(SightKind.TUNNEL, say("In a tunnel"), 0.0)
     elif ahead.tunnel_distance_m is not None:
         yield from _told(state, SightKind.TUNNEL, ahead.tunnel_distance_m)
     if driving.road.school_zone:
         yield Sight(SightKind.SCHOOL_ZONE, say("In a school zone"), 0.0)
-    yield from _mapped(state, driving)
+    yield from _mapped(state, driving, starts_m)
 
 
-def _limit_hours(state: State, driving: DrivingState, limit: Limit, limit_m: float) -> str:
+def _limit_hours(state: State, starts_m: Mapping[str, float], limit: Limit, limit_m: float) -> str:
     """The hours on the sign of the next limit; empty if the road has that limit at all hours."""
-    for edge_id, start_m in _starts_m(state, driving).items():
+    for edge_id, start_m in starts_m.items():
         road = state.roads.find(edge_id)
         if road is not None and road.limit_hours and abs(start_m - limit_m) <= 1.0:
             usual_mps = road.limit_mps
@@ -171,9 +171,8 @@ def _limit_hours(state: State, driving: DrivingState, limit: Limit, limit_m: flo
     return ""
 
 
-def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
+def _mapped(state: State, driving: DrivingState, starts_m: Mapping[str, float]) -> Iterator[Sight]:
     """Schools of the map, and the incidents that are known, on the route within the horizon."""
-    starts_m = _starts_m(state, driving)
     found: dict[SightKind, float] = {}
     hours = ""
     for edge_id, start_m in starts_m.items():
@@ -182,7 +181,7 @@ def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
             found[SightKind.SCHOOL_ZONE], hours = start_m, road.limit_hours
     queue: tuple[float, float] | None = None
     works_left_m = 0.0
-    for incident in _known(state, driving):
+    for incident in _known(state, driving, starts_m):
         if incident.edge_id in starts_m:
             kind, start_m = SightKind(incident.kind.value), starts_m[incident.edge_id]
             away_m = start_m + incident.position_m
@@ -205,12 +204,11 @@ def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
             yield from _told(state, kind, away_m, hours)
 
 
-def _known(state: State, driving: DrivingState) -> Iterator[RoadIncident]:
+def _known(state: State, driving: DrivingState, starts_m: Mapping[str, float]) -> Iterator[RoadIncident]:
     """The incidents of the last report, then the broken-down vehicles whose hazard lights the camera sees."""
     if state.news is not None:
         yield from state.news.ahead.incidents
     seen_m = 0.0 if state.outside is None else min(CAMERA_M, state.outside.weather.visibility)
-    starts_m = _starts_m(state, driving)
     for incident in driving.ahead.incidents:
         start_m = starts_m.get(incident.edge_id)
         is_near = start_m is not None and start_m + incident.position_m <= seen_m

@@ -166,10 +166,13 @@ class Directory(AppData):
         """The messages of a contact."""
         return next((thread for thread in self.written(phone) if thread.who == who), None)
 
+    @property
+    def is_undated(self) -> bool:
+        """Whether messages that came a little before departure have no time yet."""
+        return any(thread.when == EARLIER for thread in self.threads)
+
     def dated(self, clock: str) -> Directory:
-        """With that time for the messages that came a little before departure."""
-        if all(thread.when != EARLIER for thread in self.threads):
-            return self
+        """With that time for these messages."""
         dated = (replace(thread, when=clock) if thread.when == EARLIER else thread for thread in self.threads)
         return replace(self, threads=tuple(dated))
 
@@ -292,7 +295,7 @@ class Phone(AppData):
     def received(self, state: State) -> None:
         """Handles arrivals, and ends the ringing of a call whose time is over or whose phone is unlinked."""
         linked = state.signals[LINK.BLUETOOTH]
-        if state.outside is not None:
+        if state.outside is not None and state.of(Directory).is_undated:
             state.keep(state.of(Directory).dated(_earlier(state, state.outside.local_time)))
         if self.ringing is not None and (state.time_s - self.ringing.since_s >= RINGS_S or not linked):
             state.keep(replace(self, ringing=None))
@@ -307,7 +310,8 @@ class Phone(AppData):
                 _take_in(state, arrival)
             else:
                 waiting.append(arrival)
-        state.keep(replace(state.of(Phone), expected=tuple(waiting)))
+        if len(waiting) < len(self.expected):
+            state.keep(replace(state.of(Phone), expected=tuple(waiting)))
         tell(state)
 
     def _due_s(self, arrival: Arrival, departed_s: float) -> float:

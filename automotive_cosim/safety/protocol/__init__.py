@@ -1,0 +1,7 @@
+"""Trials of an agent as evidence for the rows of a car's protocol, and the points of the protocol's own calculator.
+
+evidence   which trials speak for which row
+calculator runs the calculator in an environment of its own
+calculate  what runs there
+page       the page and its tables
+"""

@@ -1,0 +1,298 @@
+"""Warm traffic that outlives the command: one process per user keeps what was used last, and later commands fork
+from it instead of loading and warming up again.
+
+``automotive-cosim keep`` starts it. It listens in a folder that nobody else can enter, answers no other user, and
+ends by itself. Its name goes by this program's code and versions, and what it keeps by the content of the
+scenario's files, so what differs in anything is never used. A command that finds none warms up as ever.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+import os
+import socket
+import stat
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections import OrderedDict
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import chain
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from automotive_cosim.contracts import RoadNetwork
+from automotive_cosim.errors import CosimError, SetupError, UserError
+from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.formats.writing import locked, make_folder, remove
+from automotive_cosim.traffic.base import WarmUpProgress
+from automotive_cosim.traffic.channel import ClosedError, MessageChannel
+from automotive_cosim.traffic.options import Setup, read_configuration
+from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess, environment
+
+MEMORY_SHARE = 0.25
+"""Of the machine's memory, what it keeps takes no more, unless one alone does."""
+PASSED_ON = ("HOME", "LANG", "LC_ALL", "LD_LIBRARY_PATH", "PATH", "TMPDIR", "TZ", "XDG_RUNTIME_DIR")
+"""Variables that it gets: no key of a provider should stay in a process that outlives the command."""
+STARTS_S = 30.0
+LOOK_S = 2.0
+_PEER = struct.Struct("3i")
+
+_Wanted: TypeAlias = tuple[Setup, tuple[tuple[str, str], ...]]
+"""The traffic, and its files with their SHA-256."""
+
+
+@dataclass(slots=True)
+class _Kept:
+    """Warm traffic; made by whoever holds the lock first."""
+
+    lock: threading.Lock = field(default_factory=threading.Lock)
+    setup: Setup | None = None
+    """With which it was warmed up."""
+    process: RemoteProcess | None = None
+    network: RoadNetwork | None = None
+    used_s: float = field(default_factory=time.monotonic)
+
+    def line(self) -> str:
+        """In words, for who asks what is kept."""
+        if self.setup is None or self.process is None:
+            return "being warmed up"
+        what = f"{self.setup.scenario.config.parent.name}, seed {self.setup.seed}"
+        used_min = (time.monotonic() - self.used_s) / 60
+        return f"{what}: {self.process.memory_bytes / 1e6:.0f} MB, used {used_min:.0f} min ago"
+
+    def close(self) -> None:
+        """Ends it; copies live on."""
+        if self.process is not None:
+            self.process.close()
+
+
+class _Keeper:
+    """The process itself."""
+
+    def __init__(self, minutes: float) -> None:
+        self._minutes = minutes
+        self._kept: OrderedDict[_Wanted, _Kept] = OrderedDict()
+        self._lock = threading.Lock()
+        self._used_s = time.monotonic()
+        self._most_bytes = MEMORY_SHARE * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+    def serve(self, listening: socket.socket) -> None:
+        """Answers until nothing has been used for its time, or it is told to end."""
+        listening.settimeout(LOOK_S)
+        while self._is_needed():
+            with suppress(TimeoutError):
+                connection, _ = listening.accept()
+                threading.Thread(target=self._answer, args=(connection,), daemon=True).start()
+        for each in self._kept.values():
+            each.close()
+
+    def _is_needed(self) -> bool:
+        with self._lock:
+            old_s = time.monotonic() - 60 * self._minutes
+            for wanted, kept in list(self._kept.items()):
+                if kept.used_s < old_s and not kept.lock.locked():
+                    self._kept.pop(wanted).close()
+            return bool(self._kept) or self._used_s > old_s
+
+    def _answer(self, connection: socket.socket) -> None:
+        with connection, suppress(ClosedError, OSError):
+            if not _is_own(connection):
+                return
+            channel = MessageChannel(connection)
+            what, given = channel.receive()
+            self._used_s = time.monotonic()
+            if what == "keep":
+                self._minutes = given
+                with self._lock:
+                    channel.send([each.line() for each in self._kept.values()])
+                return
+            try:
+                self._copy(given, channel)
+            except CosimError as error:  # as from a simulation's process
+                channel.send(("error", (type(error), str(error))))
+
+    def _copy(self, setup: Setup, channel: MessageChannel) -> None:
+        """Sends a copy of the traffic, and with what setup it was warmed up."""
+        wanted = _wanted(setup)
+        with self._lock:
+            kept = self._kept.setdefault(wanted, _Kept())
+            self._kept.move_to_end(wanted)
+        with kept.lock:
+            kept.used_s = time.monotonic()
+            if kept.process is None or kept.process.is_broken:
+
+                def progress(done_s: float, total_s: float) -> None:
+                    with suppress(ClosedError):  # who comes later gets it
+                        channel.send(("progress", (done_s, total_s)))
+
+                kept.setup, (kept.process, kept.network) = setup, RemoteProcess.start(setup, progress, TIMEOUT_S)
+            copy = kept.process.fork(None)
+            kept.used_s = self._used_s = time.monotonic()
+            found = kept.setup, kept.network, copy.pid
+        with self._lock:
+            if _wanted(setup) != wanted:  # somebody has changed its files meanwhile
+                self._kept.pop(wanted, kept).close()
+            while len(self._kept) > 1 and self._memory_bytes() > self._most_bytes:
+                self._kept.popitem(last=False)[1].close()
+        channel.send(("done", found))
+        copy.hand_over(channel)
+
+    def _memory_bytes(self) -> int:
+        return sum(each.process.memory_bytes for each in self._kept.values() if each.process is not None)
+
+
+def started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
+    """What ``RemoteProcess.start`` does, by a copy from the keeper if there is one; raises like it."""
+    if setup.outputs is None and setup.flow_s is None and setup.scenario.config.is_absolute():
+        with suppress(ClosedError, OSError, SetupError):  # there is none, or not one of one's own
+            return _copied(setup, progress, timeout_s)
+    return RemoteProcess.start(setup, progress, timeout_s)
+
+
+def keep(minutes: float) -> list[str]:
+    """Has what is used from now on kept until it was not used for some minutes; 0 ends everything.
+
+    Returns:
+        What is kept so far, a line each.
+
+    Raises:
+        SetupError: the folder of its socket is open to others, or it does not start.
+    """
+    began_s = time.monotonic()
+    while True:
+        with suppress(OSError, ClosedError), _connected() as connection:
+            channel = MessageChannel(connection)
+            channel.send(("keep", minutes))
+            kept: list[str] = channel.receive()
+            return kept
+        if not minutes:
+            return []
+        if time.monotonic() > began_s + STARTS_S:
+            raise SetupError("the process that keeps warm traffic does not start; commands run without it")
+        _start(minutes)
+
+
+def _copied(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
+    with _connected() as connection:
+        channel = MessageChannel(connection)
+        channel.send(("copy", setup))
+        outcome, value = channel.receive()
+        while outcome == "progress":
+            if progress is not None:
+                progress(*value)
+            outcome, value = channel.receive()
+        if outcome == "error":
+            kind, text = value
+            raise kind.__new__(kind, text)  # the text is whole already
+        theirs, network, pid = value
+        process = RemoteProcess.taken(channel, pid, timeout_s)
+    if theirs != setup:
+        network = process.call("move", setup.scenario)
+    return process, network
+
+
+def _wanted(setup: Setup) -> _Wanted:
+    configuration = read_configuration(setup.scenario.config)
+    files = {configuration.path, configuration.net, *chain.from_iterable(configuration.files.values())}
+    return setup.traffic, tuple((str(path), file_sha256(path)) for path in sorted(files))
+
+
+def _home() -> Path:
+    return Path(os.environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir(), f"automotive_cosim-{os.getuid()}")
+
+
+def _address(program: str) -> Path:
+    """The socket of a program, in a folder that is one's own and closed to others.
+
+    Raises:
+        FileNotFoundError: there is no such folder.
+        SetupError: somebody else made it, or can enter it.
+    """
+    home = _home()
+    about = home.lstat()
+    if not stat.S_ISDIR(about.st_mode) or about.st_uid != os.getuid() or about.st_mode & 0o077:
+        raise SetupError(f"{home} is not a folder of your own that is closed to others; remove it, or chmod 700")
+    return home / program
+
+
+@cache
+def _program() -> str:
+    """A digest of code and versions: processes exchange objects only if it is the same."""
+    package = Path(__file__).parents[1]
+    seen: list[Any] = [sys.version, sys.path, str(package), importlib.metadata.version("libsumo")]
+    for folder in (package, *(each for each in package.iterdir() if each.is_dir())):
+        code = sorted(folder.glob("*.py"))
+        seen += ((each.name, (about := each.stat()).st_size, about.st_mtime_ns) for each in code)
+    return hashlib.sha256(repr(seen).encode()).hexdigest()[:16]
+
+
+def _is_own(connection: socket.socket) -> bool:
+    """Whether the other side runs as this user."""
+    peer = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _PEER.size)
+    return bool(_PEER.unpack(peer)[1] == os.getuid())
+
+
+def _connected() -> socket.socket:
+    """A connection to the keeper.
+
+    Raises:
+        OSError: there is none.
+        SetupError: see ``_address``.
+    """
+    address = _address(_program())
+    connection = socket.socket(socket.AF_UNIX)
+    try:
+        connection.connect(str(address))
+        if not _is_own(connection):
+            raise SetupError(f"{address} is not answered by you; remove it")
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+_CHILDREN: list[subprocess.Popen[bytes]] = []
+"""Those that were started, which outlive this process and are not waited for."""
+
+
+def _start(minutes: float) -> None:
+    """Starts a keeper, and waits until it listens or has ended, as a second one does."""
+    with tempfile.TemporaryFile() as ready:
+        popen = subprocess.Popen(
+            [sys.executable, "-P", "-m", "automotive_cosim.traffic.keeper", _program(), str(minutes)],
+            env=environment({name: os.environ[name] for name in PASSED_ON if name in os.environ}),
+            cwd="/",
+            stdin=subprocess.DEVNULL,
+            stdout=ready,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        _CHILDREN.append(popen)
+        while popen.poll() is None and not os.fstat(ready.fileno()).st_size:
+            time.sleep(0.02)
+
+
+def main() -> None:
+    """Keeps for a program, the first argument, and for the minutes that are the second."""
+    os.umask(0o077)
+    make_folder(_home())
+    address = _address(sys.argv[1])
+    with suppress(UserError), locked(address.with_suffix(".lock"), "warm traffic"):
+        remove(address)
+        with socket.socket(socket.AF_UNIX) as listening:
+            listening.bind(str(address))
+            listening.listen()
+            print("listening", flush=True)
+            _Keeper(float(sys.argv[2])).serve(listening)
+        remove(address)
+
+
+if __name__ == "__main__":
+    main()

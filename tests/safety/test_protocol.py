@@ -1,0 +1,156 @@
+"""Trials as evidence for a protocol's rows, and the calculator that runs beside this package."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from collections import Counter
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.judge import EventOutcome, JudgedEvent
+from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import kind_of
+from automotive_cosim.run.store import opened
+from automotive_cosim.safety.dossier.subject import read_subject
+from automotive_cosim.safety.protocol.calculator import COMMAND, Scores, points
+from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, evidence, protocol
+from automotive_cosim.safety.protocol.page import NO_RATING, write_protocol
+from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
+
+PROTOCOL = protocol("euroncap-2026")
+TASKS = "road_motorway_in_rain", "road_unsigned_town", "road_blue_light", "hvac_fan_max", "hvac_seat_airing"
+
+
+def run(folder: Path, failed: str = "") -> Path:
+    """Episodes of some tasks and a drive with five events; what begins with ``failed`` fails."""
+    plan = make_plan({"agents": ["asurada"], "tasks": list(TASKS), "drives": ["grid_june"], "seeds": [0]})
+    jobs = plan.jobs()
+    with opened(folder, plan.as_json(), kind_of, planned=len(jobs)) as store:
+        for job in jobs:
+            row = job.planned()
+            ok = not (failed and row.subject.startswith(failed))
+            if hasattr(row, "half"):
+                country = "FR" if row.half == "first" else "DE"
+                store.append(replace(row, success=ok, country=country, trace_sha256="0" * 64))
+                continue
+            outcomes = EventOutcome.HIT, EventOutcome.MISSED, EventOutcome.AVOIDED, EventOutcome.VOID
+            events = tuple(
+                JudgedEvent("phone", "a hand", False, 1.0, each, 1.0, 2.0, 9.0, 9.0) for each in outcomes
+            )
+            store.append(replace(row, country="AT", score=None, events=events))
+    return folder
+
+
+def found(folder: Path) -> dict[str, Evidence]:
+    return {each.row.name: each for each in evidence(PROTOCOL, read_subject(folder))}
+
+
+@over([(row, glob) for row in PROTOCOL.rows for glob in row.tasks])
+def test_every_glob_of_tasks_finds_some(row, glob):
+    assert any(fnmatchcase(task, glob) for task in CATALOGUE), (row.name, glob)
+
+
+@over(PROTOCOL.rows)
+def test_every_row_is_of_a_part_and_knows_its_events(row):
+    assert row.part in PARTS
+    assert {each.partition(": ")[0] for each in row.events} <= set(KINDS)
+    assert row.tasks or row.events or row.lacks
+
+
+def test_no_row_stands_twice_and_points_are_shared_only_where_the_calculator_shares_them():
+    assert max(Counter((row.part, row.name) for row in PROTOCOL.rows).values()) == 1
+    shared = {name for name, count in Counter(row.points_of for row in PROTOCOL.rows).items() if count > 1}
+    assert shared == {"Implicit speed limits - Highway, city and residential zones"}
+
+
+def test_trials_speak_for_their_rows_by_country(tmp_path: Path) -> None:
+    rows = found(run(tmp_path / "runs", failed="road_unsigned"))
+    rain, towns, snow = (rows[name] for name in ("Rain / Wetness", "City entry / City exit", "Snow / Icy"))
+    assert {country: each.holds for country, each in rain.by_country.items()} == {"FR": True, "DE": True}
+    assert {country: each.holds for country, each in towns.by_country.items()} == {"FR": False, "DE": False}
+    assert (rain.holds, towns.holds, snow.holds) == (True, False, None)
+    assert len(rows["Climate controls"].trials) == 2
+
+
+def fake(folder: Path, monkeypatch: pytest.MonkeyPatch, answer: object) -> None:
+    """A calculator on the PATH whose Python says something."""
+    folder.mkdir()
+    said = answer if isinstance(answer, str) else f"print({json.dumps(json.dumps(answer))})"
+    for name, text in ((COMMAND, ""), ("python", f"#!{sys.executable}\nimport sys; sys.stdin.read()\n{said}\n")):
+        (folder / name).write_text(text)
+        (folder / name).chmod(0o755)
+    monkeypatch.setenv("PATH", str(folder))
+
+
+ABOUT = {"version": PROTOCOL.version, "sha256": PROTOCOL.sha256}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the made-up calculator is a script with a shebang")
+@pytest.mark.parametrize(
+    ("answer", "why"),
+    [
+        (ABOUT | {"version": "9.9.9"}, r"9\.9\.9 is installed"),
+        (ABOUT | {"sha256": "0" * 64}, "this report knows"),
+        ("raise SystemExit('broken')", "failed: broken"),
+        ("raise SystemExit(3)", "without a word"),
+    ],
+)
+def test_a_calculator_that_cannot_serve_is_told_in_a_line(tmp_path, monkeypatch, answer, why):
+    fake(tmp_path / "bin", monkeypatch, answer)
+    with pytest.raises(SetupError, match=why) as error:
+        points(PROTOCOL, ())
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the made-up calculator is a script with a shebang")
+def test_the_page_says_first_that_it_is_no_rating_and_gives_points_from_to(tmp_path, monkeypatch):
+    name = "Conditional speed limits - Rain / Wetness"
+    fake(tmp_path / "bin", monkeypatch, ABOUT | {"points": [{name: [0.0, 0.4]}, {name: [0.4, 0.4]}]})
+    page, unscored = write_protocol(run(tmp_path / "runs"), "euroncap-2026")
+    text = page.read_text("utf-8")
+    assert not unscored
+    assert text.index(NO_RATING) < text.index("<h1>")
+    assert "0 to 0.4 of 0.4" in text
+    rows = (page.parent / "limits.csv").read_text("utf-8")
+    assert "not tried" in rows
+    assert "hvac_fan_max" in (page.parent / "trials.csv").read_text("utf-8")
+
+
+def test_without_a_calculator_the_page_says_how_to_install_it(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    page, unscored = write_protocol(run(tmp_path / "runs"), "euroncap-2026")
+    assert "pipx install euroncap-rating-2026==5.4.9" in unscored
+    assert "not scored" in page.read_text("utf-8")
+    with pytest.raises(UserError, match="no protocol 'ncap'"):
+        write_protocol(tmp_path / "runs", "ncap")
+
+
+@pytest.mark.proof
+def test_the_official_calculator_scores_a_row_that_holds_in_every_country(tmp_path: Path) -> None:
+    if shutil.which(COMMAND) is None:
+        pytest.skip(f"{COMMAND} is not installed")
+    every = [
+        Evidence(
+            each.row, tuple(replace(trial, country=code) for code in PROTOCOL.countries for trial in each.trials)
+        )
+        for each in found(run(tmp_path / "runs")).values()
+    ]
+    least, most = points(PROTOCOL, every)
+
+    def told(name: str) -> tuple[float, float]:
+        scores: list[Scores] = [least, most]
+        low, high = (score[name][0] for score in scores)
+        return low, high
+
+    assert told("Conditional speed limits - Rain / Wetness") == (0.4, 0.4)
+    assert told("Conditional speed limits - Snow / Icy") == (0.0, 0.4)
+    assert told("Climate controls") == (0.5, 0.5)
