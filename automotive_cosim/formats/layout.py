@@ -6,7 +6,8 @@
     steps.jsonl     one line per step, written step by step: what a page shows, and hashes of the state for a replay
                     (steps.jsonl.gz of a drive that is over, which has hundreds)
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
-                    road_000.jpg, ...: the view through the windshield after each step (of a drive, if the agent is given it)
+                    road_000.jpg, ...: the view through the windshield after each step;
+                    of a drive, if the agent is given it
     road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
 
 ``run`` adds a film and a page, and the whole state to each line of its steps; a pair is a folder with both. In the
