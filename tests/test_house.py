@@ -37,7 +37,7 @@ CEILINGS = {
     "envs": (1313, 9, 0),
     "episode": (1787, 19, 0),
     "exchange": (3435, 12, 0),
-    "formats": (2758, 37, 0),
+    "formats": (2759, 37, 0),
     "geo": (3522, 39, 0),
     "interface": (1550, 5, 0),
     "measures": (929, 8, 0),
