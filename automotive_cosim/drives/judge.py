@@ -261,7 +261,7 @@ def judge(
     ]
     for case in cases:
         case.caused = not case.event.lookalike and any(_contrary(case, act) for act in acts)
-    known = against if order.tells_thresholds else partial(_beyond_doubt, against)
+    known = known_to(order, against)
     repeat_s = NAGGING_S if order is Order.PLAIN else REPEAT_S
     bench = _Bench(tuple(kinds.values()), cases, known, at_start or {}, hold_s, repeat_s)
     judged = tuple(map(bench.act, acts))
@@ -274,6 +274,11 @@ def judge(
         and not any(_heeds(act, event, kinds[event.kind]) for act in heard)
     ]
     return Judgement((*found, *_evaded(evadable, found, judged)), judged)
+
+
+def known_to(order: Order, against: Against) -> Against:
+    """The facts that count against who was given that order."""
+    return against if order.tells_thresholds else partial(_beyond_doubt, against)
 
 
 def _beyond_doubt(against: Against, kind: EventKind, time_s: float) -> str | None:
