@@ -11,7 +11,7 @@ import sys
 from contextlib import suppress
 
 LOADING = {
-    "run": "tasks and agents", "eval": "tasks and agents", "drive": "drives and agents", "search": "drives",
+    "run": "tasks and agents", "eval": "tasks and agents", "search": "drives",
     "study": "scenarios and agents", "bench": "scenarios", "measures": "drives", "report": "results",
     "compare": "results", "export": "results", "replay": "results", "scenarios calibrate": "counts",
     "scenarios check": "scenarios", "scenarios equilibrate": "scenarios", "scenarios import": "the importer",

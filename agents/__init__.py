@@ -140,7 +140,6 @@ def make_agent(
         name: one of ``AGENTS``, ``package.module:Class``, or ``a2a:http://HOST:PORT``.
         model: a model's name (``models.make_model``), for the agents that have one; for ``native`` with the setting
             ``format``.
-        settings: how to run it.
         chat_model: what answers in that model's place, e.g. a connection to it.
 
     Raises:
@@ -177,8 +176,6 @@ def model_of(
     """The model that an agent of this name asks; None if it has none.
 
     Args:
-        name: the agent.
-        model: the model's name.
         turns: where a model with a limit of questions a minute takes its turns; by default its own.
         settings: of the agent; one that calls functions tells its model which.
 

@@ -316,7 +316,6 @@ def translated(
     """An AndroidWorld ``JSONAction``, or anything with its attributes, as one of ours.
 
     Args:
-        action: the action.
         elements: those on the screen; a text without a target goes to the one with the focus.
         last: the pixel that was touched last.
         screen_px: width and height; a swipe without a target begins in the middle.

@@ -60,7 +60,6 @@ def read(text: str, *, is_cut: bool = False) -> ParsedAnswer:
     """The answer's parts.
 
     Args:
-        text: the answer.
         is_cut: whether it was cut off at its longest. Then only a whole action after its label counts: any other
             may be a thought or half of one.
 
@@ -100,11 +99,7 @@ def _answer(text: str, action: Json, *, strict: bool) -> ParsedAnswer:
 
 
 def schema(action: Json) -> Json:
-    """The JSON Schema of an answer that is one object.
-
-    Args:
-        action: the schema of its action.
-    """
+    """The JSON Schema of an answer that is one object."""
     words = {"type": "string", "maxLength": LONGEST_WORDS}
     return {
         "type": "object",

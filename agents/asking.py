@@ -32,8 +32,6 @@ class Asking:
         """The answer, and the question's digest.
 
         Args:
-            text: the question.
-            pictures: sent with it.
             form: JSON Schema of the answer, for a model that is held to it.
 
         Raises:

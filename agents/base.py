@@ -120,7 +120,6 @@ class Privileged(Protocol):
         """Called after ``reset``.
 
         Args:
-            instance: the task.
             drawn: the boxes of the widgets in the present picture, for a reference that works by pixels.
             branch: gives a copy of the episode as it is, for a reference that tries things; it closes the copy.
         """

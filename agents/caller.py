@@ -164,9 +164,7 @@ def heard(reply: ModelReply, schemas: Mapping[str, Json], count: int = 0) -> Cha
     written in the words.
 
     Args:
-        reply: the answer.
         schemas: of the parameters, by function.
-        count: of the calls before it.
 
     Raises:
         ActionError: it ended within its thoughts.

@@ -123,7 +123,6 @@ def own_class(spec: str, what: str) -> type:
     """The class ``package.module:Class``, which may be in the working folder.
 
     Args:
-        spec: its name.
         what: it should be, for errors.
 
     Raises:

@@ -55,8 +55,6 @@ class ModelAgent:
         """Puts the agent together.
 
         Args:
-            profile: which agent it is.
-            chat_model: the model to ask.
             settings: what to take away from the profile, the budget, and the memory's file.
 
         Raises:

@@ -87,12 +87,10 @@ class Oracle:
         """Takes the instance's reference solution, or other moves, one tap per action.
 
         Args:
-            instance: the task.
             moves: another of its solutions, or other moves.
             declares: what to declare then; None for what is right.
             drawn: the boxes of the widgets in the present picture, with the texts that it shows. An agent that sees
                 the picture alone finds its way by them, and acts by points.
-            branch: not used.
         """
         self._drawn = drawn
         self._moves.clear()

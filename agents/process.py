@@ -73,7 +73,6 @@ class _AskedModel:
         self._wire = wire
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
-        """The model's reply."""
         self._wire.send_json({"ask": [_message(message) for message in messages]})
         kind, reply = self._wire.receive_object()
         assert kind == "reply"

@@ -60,8 +60,6 @@ def turn(
     """The prompt of one turn of an agent.
 
     Args:
-        profile: which agent it is.
-        observation: what it sees.
         history: one line per step so far.
         plan: what it intended to do next when it last acted.
         recalled: what it remembers of earlier episodes, one line each.
@@ -113,9 +111,6 @@ def situation(
     """The situation alone, for an agent whose protocol carries the rest: the functions and what was called.
 
     Args:
-        profile: what the agent is given.
-        observation: what it sees.
-        pictures: whether the picture comes with it.
         is_spoken: whether it has what the driver said.
         is_resulting: whether it has the last result; without it, the time that has passed alone.
     """
@@ -208,7 +203,6 @@ def look_back(
         before: what was seen when it was chosen.
         action: the action; None for an answer that could not be read.
         after: what is seen now.
-        plan: what was planned.
         pictures: whether a picture of before and one of after come with it.
     """
     lists = (before.elements, after.elements)
@@ -227,10 +221,7 @@ def step(number: int, action: Action | None, seen: Observation, after: Observati
     """One line of history: the action, when it was chosen, its result, and the lesson.
 
     Args:
-        number: of the step.
         action: the action; None for an answer that could not be read.
-        seen: what was seen when it was chosen.
-        after: what was seen then.
         lesson: what the agent learnt from it.
     """
     learnt = f"; {one_line(lesson)}" if lesson else ""

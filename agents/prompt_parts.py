@@ -91,13 +91,7 @@ def changes(before: Sequence[Element], after: Sequence[Element]) -> str:
 
 
 def actions(kinds: Collection[ActionType], *, by_point: bool, by_name: bool = False) -> str:
-    """The actions as names with their fields, and how a target is given.
-
-    Args:
-        kinds: the actions to list.
-        by_point: whether a target is a point alone.
-        by_name: whether to leave out what each is for.
-    """
+    """The actions as names with their fields, and how a target is given."""
     point = "x and y are pixels" if by_point else "x and y, in pixels, may stand in place of index"
     names = signatures(kinds, by_point=by_point, is_told=not by_name)
     targets = f"; {point}" if any(FIELDS[kind].target for kind in kinds) else ""

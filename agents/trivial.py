@@ -97,7 +97,6 @@ class Random:
         self._rng = np.random.default_rng(self._seed)
 
     def act(self, observation: Observation) -> Action:
-        """A randomly drawn action."""
         kind = UNCALLED[int(self._rng.integers(len(UNCALLED)))]
         takes = FIELDS[kind]
         names = takes.required + (("index",) if takes.target else ())

@@ -129,7 +129,6 @@ def _values(text: str, at: int, most: int = 100) -> list[tuple[Any, int]]:
 
 
 def _called(value: object, schemas: Mapping[str, Json]) -> Iterator[WrittenCall]:
-    """The calls in a value of JSON."""
     if isinstance(value, list):
         for each in value:
             yield from _called(each, schemas)

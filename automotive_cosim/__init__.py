@@ -1,9 +1,10 @@
 """Automotive-ENV coupled to live SUMO traffic: a benchmark for agents that work a car's cockpit.
 
-It registers four environments with gymnasium, as soon as both are imported: ``AutomotiveCosim/Cockpit-v0`` for
+It registers five environments with gymnasium, as soon as both are imported: ``AutomotiveCosim/Cockpit-v0`` for
 tasks, ``AutomotiveCosim/Drive-v0`` for drives, and for reinforcement learning ``AutomotiveCosim/Flat-v0`` on tasks
-and ``AutomotiveCosim/FlatDrive-v0`` on drives. The names in ``__all__`` are what most programs need; each is loaded
-when it is first used. ``docs/reference/api.md`` lists everything that is public.
+and ``AutomotiveCosim/FlatDrive-v0`` on drives; ``AutomotiveCosim/Fleet-v0`` has several cars in one traffic. The
+names in ``__all__`` are what most programs need; each is loaded when it is first used. ``docs/reference/api.md``
+lists everything that is public.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ __all__ = sorted(name for names in _HOMES.values() for name in names)  # pyright
 _ENVIRONMENTS = {
     "Cockpit": ("cockpit:CockpitEnv", "vector:cockpits"),
     "Drive": ("drive:DriveEnv", None),
+    "Fleet": (None, "fleet:FleetVectorEnv"),
     "FlatDrive": ("flat_drive:FlatDriveEnv", None),
     "Flat": ("flat:FlatEnv", "vector:flats"),
 }
@@ -49,8 +51,8 @@ _ENVIRONMENTS = {
 def _register(gymnasium: ModuleType) -> None:
     home = f"{__name__}.envs."
     for name, (one, several) in _ENVIRONMENTS.items():
-        vector = several and home + several
-        gymnasium.register(f"AutomotiveCosim/{name}-v0", entry_point=home + one, vector_entry_point=vector)
+        entry, vector = one and home + one, several and home + several
+        gymnasium.register(f"AutomotiveCosim/{name}-v0", entry_point=entry, vector_entry_point=vector)
 
 
 class _Registers:

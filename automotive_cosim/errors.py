@@ -4,9 +4,6 @@ CosimError                 anything a caller may want to catch at once
 ├── UserError              the user can fix it; the command line prints one line and exits with 2
 │   ├── UnknownNameError        no scenario, task, agent, … of that name ("did you mean")
 │   ├── ScenarioError      a scenario's files are missing, invalid or contradictory
-│   ├── GeoDataError       a file of places and traffic rules is invalid
-│   ├── ImportMapError     a map extract cannot be turned into a scenario
-│   ├── CountsError        a file of traffic counts cannot be read, or does not fit the scenario
 │   ├── ActionError        an action is malformed (wrong type, missing or extra fields)
 │   ├── SignalError        a vehicle signal was given a value it cannot have
 │   └── SetupError         the installation lacks something (SUMO's version, system libraries, an extra)
@@ -90,18 +87,6 @@ class UnknownNameError(UserError):
 
 class ScenarioError(UserError):
     """A scenario that cannot be run as it is."""
-
-
-class GeoDataError(UserError):
-    """A file of places and traffic rules that cannot be used: file, entry and reason."""
-
-
-class ImportMapError(UserError):
-    """A map extract that cannot be imported."""
-
-
-class CountsError(UserError):
-    """Counts of a road that cannot be read, or that a scenario's traffic cannot be scaled to."""
 
 
 class ActionError(UserError):

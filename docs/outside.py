@@ -25,8 +25,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from automotive_cosim.exchange.catalogs import NAMELESS
-from automotive_cosim.exchange.words import table
+from automotive_cosim.exchange.catalogs import NAMELESS, table
 
 TOP = Path(__file__).parents[1]
 SEEN = re.compile(r"<!-- readers, seen by `python -m docs\.outside` -->\n\n(.*?)\n\n<!-- end -->", re.DOTALL)

@@ -22,7 +22,7 @@ from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.episode.conditions import TABLE
-from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
+from automotive_cosim.exchange.catalogs import CARRIED, DIFFERENT, REFUSED, table
 from automotive_cosim.formats.bounds import READERS
 from automotive_cosim.formats.docs import field_docs, member_docs
 from automotive_cosim.interface import spaces

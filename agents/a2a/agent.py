@@ -208,7 +208,6 @@ class A2AAgent:
         return prompt.situation(self._profile, seen, pictures=False, is_spoken=is_spoken, is_resulting=is_resulting)
 
     def _told(self, seen: Observation) -> str:
-        """What it is to do."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self._profile.channels else ""
         name = "caller_watch" if seen.on_watch else "caller"
         return prompt.fill(name, {"weigh": weigh, "words": SPOKEN, "policy": seen.policy})

@@ -82,7 +82,6 @@ class AgentLine:
 
         Args:
             parts: strings for text, all else for data.
-            source: whose words it has.
             limit_s: wall seconds in which the whole answer has to be there.
 
         Raises:

@@ -51,7 +51,6 @@ def opening(system: str, words: str, tools: Iterable[Function]) -> list[Any]:
     """The parts of the first message; a string is text, an object data.
 
     Args:
-        system: what to do, and the situation.
         words: what the driver says, and nothing else: some agents go by its words.
         tools: what the agent can call.
     """

@@ -43,9 +43,6 @@ class NativeAgent:
 
         Args:
             model: the model's whole name, with its format, for results.
-            chat_model: the model to ask.
-            form: how it answers.
-            settings: the budget.
 
         Raises:
             UserError: the model sees no pictures.

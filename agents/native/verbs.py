@@ -115,7 +115,6 @@ class Verb:
         return self.meaning is Meaning.END and self.means != "success"
 
     def arguments(self) -> tuple[str, ...]:
-        """Names of its arguments."""
         switches = (switch.partition(":")[0] for switch in (self.enter, self.clear))
         named = (self.text.partition("|")[0], self.direction, self.seconds, self.says, *switches)
         return (*self.at, *self.to, *filter(None, named))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 R = TypeVar("R", bound="JobRow")
 
-EXECUTORS = ("processes", "ray")
+EXECUTORS = ("processes", "ray", "ray:FOLDER")
 WHERE = "Where to run"
 
 
@@ -39,9 +39,8 @@ class ExecutorSettings:
     ] = None
     """How many run in parallel."""
     executor: Annotated[str, Option(panel=WHERE)] = EXECUTORS[0]
-    """Where to run: processes of this machine, or ray for the cluster at RAY_ADDRESS, else a new one here."""
-    ray_send: Annotated[Path | None, Option(form="FOLDER", panel=WHERE)] = None
-    """A folder of your own agents, tasks or scenarios. Every node gets a copy and runs in it."""
+    """Where to run: processes of this machine, or ray for the cluster at RAY_ADDRESS, else a new one here. With
+    ray:FOLDER, every node gets a copy of a folder of your own agents, tasks or scenarios, and runs in it."""
 
     @property
     def processes(self) -> int:
@@ -53,20 +52,18 @@ class ExecutorSettings:
 
         Raises:
             UnknownNameError: there is no such executor.
-            UserError: an option belongs to another executor.
             SetupError: ray is not installed.
         """
         from automotive_cosim.run.processes import Processes
 
-        if self.executor not in EXECUTORS:
+        if self.executor == "processes":
+            return Processes(self.processes)
+        name, colon, folder = self.executor.partition(":")
+        if name != "ray" or bool(colon) != bool(folder):
             raise UnknownNameError("executor", self.executor, EXECUTORS)
-        if self.executor == "ray":
-            from automotive_cosim.run.on_ray import OnRay
+        from automotive_cosim.run.on_ray import OnRay
 
-            return OnRay(os.environ.get("RAY_ADDRESS"), self.workers, self.ray_send)
-        if self.ray_send is not None:
-            raise UserError("--ray-send requires --executor ray; give both or neither")
-        return Processes(self.processes)
+        return OnRay(os.environ.get("RAY_ADDRESS"), self.workers, Path(folder) if folder else None)
 
 
 class ProgressView(Generic[R]):
@@ -82,7 +79,6 @@ class ProgressView(Generic[R]):
         """Nothing has been told yet.
 
         Args:
-            console: where to show it.
             what: is being run, in the plural.
             said: gives the text next to its count.
             expected: seconds that it was said to take before it started; None if it was not.

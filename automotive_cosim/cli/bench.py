@@ -2,27 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Any
+from functools import partial
+from typing import Annotated
 
 import typer
+from annotated_types import Ge, Le
 
-from automotive_cosim.cli.derived import filled, takes
+from automotive_cosim.cli.derived import number_in
 from automotive_cosim.cli.options import AsJson, print_json
-from automotive_cosim.run.settings import BenchSettings
 
 
-@takes(BenchSettings)
-def bench(as_json: AsJson = False, **settings: Any) -> None:
+def bench(
+    scenario: Annotated[
+        str, typer.Option(help="A scenario's name or folder, any .sumocfg or .net.xml(.gz).")
+    ] = "paris_centre",
+    steps: Annotated[
+        int,
+        typer.Option(
+            help="SUMO steps to measure after the warm-up.",
+            metavar="N",
+            parser=partial(number_in, int, (Ge(100), Le(10**6))),
+        ),
+    ] = 2000,
+    as_json: AsJson = False,
+) -> None:
     """Time a libsumo loop and the environment side by side; also resets and memory."""
     from automotive_cosim.run.measure import measure
-
-    told = filled(BenchSettings, settings)
 
     def say(what: str) -> None:
         if not as_json:
             typer.echo(f"measuring: {what}", err=True)
 
-    found = measure(told.scenario, told.steps, say)
+    found = measure(scenario, steps, say)
     if as_json:
         print_json(found.as_json())
         return

@@ -33,7 +33,7 @@ COMMAND_SETTINGS = {"ignore_unknown_options": True}
 
 
 @dataclass(frozen=True, slots=True)
-class ContextSettings:
+class _ContextSettings:
     """What can be told about a car that is somewhere."""
 
     time: str = ""
@@ -44,17 +44,13 @@ class ContextSettings:
     """WMO weather code as Open-Meteo uses it."""
     visibility_m: Annotated[float | None, Ge(0), Le(1e6), Option("visibility", form="M")] = None
     """Visibility in metres, instead of the usual one for the weather code."""
-    draw: Annotated[int | None, Option(form="SEED")] = None
-    """Seed to draw the weather from the climate of the place and month."""
     online: bool = False
     """Ask Open-Meteo for the weather; if that fails, use the climate."""
     road: str = ""
     """OSM highway value, e.g. motorway, primary, residential."""
-    budget: Annotated[int | None, Ge(1), Le(10**6)] = None
-    """Limit of the text in tokens."""
 
 
-@takes(ContextSettings)
+@takes(_ContextSettings)
 def context(
     lat: Annotated[float, typer.Argument(help="Degrees north; negative is south.")],
     lon: Annotated[float, typer.Argument(help="Degrees east; negative is west.")],
@@ -68,7 +64,7 @@ def context(
     from automotive_cosim.contracts import GpsFix
     from automotive_cosim.geo.locate import Geo
 
-    told = filled(ContextSettings, settings)
+    told = filled(_ContextSettings, settings)
     _check(told.road, rules or ())
     geo = Geo(rules or ())
     place = geo.atlas.place(lon, lat)
@@ -82,7 +78,7 @@ def context(
     if as_json:
         print_json(_json(found))
     else:
-        typer.echo(found.text() if told.budget is None else found.text(told.budget))
+        typer.echo(found.text())
 
 
 def _check(road: str, folders: Sequence[Path]) -> None:
@@ -107,11 +103,11 @@ def _time(text: str, zone_name: str) -> datetime:
         raise UserError(f"{text!r} is not a date and time; give one such as 2026-03-20T18:30") from error
 
 
-def _weather(told: ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather | None:
+def _weather(told: _ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather | None:
     from automotive_cosim.geo.climate import climate_norm
     from automotive_cosim.geo.weather import typical_weather
 
-    if told.draw is not None or told.online:
+    if told.online:
         return _report(told, lat, lon, local_time)
     if told.weather is None:
         if told.visibility_m is not None:
@@ -123,22 +119,18 @@ def _weather(told: ContextSettings, lat: float, lon: float, local_time: datetime
     return found if told.visibility_m is None else replace(found, visibility=told.visibility_m)
 
 
-def _report(told: ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather:
+def _report(told: _ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather:
     from automotive_cosim.geo.forecast import Climate, OpenMeteo
 
     if told.weather is not None:
-        raise UserError("--weather sets the weather; omit --draw and --online")
-    seed = told.draw or 0
-    if seed < 0:
-        raise UserError(f"--draw {seed} is not a seed; give a whole number from 0")
-    source = OpenMeteo(Climate(seed)) if told.online else Climate(seed)
-    report = source.report(lon, lat, local_time)
+        raise UserError("--weather sets the weather; omit --online")
+    report = OpenMeteo(Climate(0)).report(lon, lat, local_time)
     if report.note:
         typer.echo(report.note, err=True)
     return report.weather
 
 
-def _driving(told: ContextSettings) -> DrivingState:
+def _driving(told: _ContextSettings) -> DrivingState:
     """A car alone on a road with one lane and no sign."""
     from automotive_cosim import contracts
 

@@ -17,9 +17,8 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from automotive_cosim.cli.batches import numbers_in, whole_numbers_in, words
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.formats.annotations import OneOf
+from automotive_cosim.formats.annotations import OneOf, option_name, shown_as
 from automotive_cosim.formats.docs import inherited_field_docs
-from automotive_cosim.formats.options import option_name, shown_as
 
 F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
@@ -41,9 +40,7 @@ def takes(kind: type, *, only: Collection[str] = (), but: Collection[str] = ()) 
     an option that denies it.
 
     Args:
-        kind: the dataclass.
         only: the fields that have an option; empty for all.
-        but: fields that have no option.
     """
     return with_options(
         each for each in _parameters(kind) if (not only or each.name in only) and each.name not in but

@@ -58,7 +58,7 @@ EXTRAS = {
     "maps": Extra("osmium", "scenarios import and download"),
     "models": Extra("httpx2", "--model openai/NAME and --model local"),
     "reports": Extra("matplotlib", "report, tables as Parquet and PDFs"),
-    "safety": Extra("optuna", "search and export --osi"),
+    "safety": Extra("optuna", "search and export to OSI"),
     "rl": Extra("stable_baselines3", "training in Flat-v0 and FlatDrive-v0"),
     "doors": Extra("mcp", "mcp, a2a and --agent a2a:http://HOST:PORT"),
     "harnesses": Extra("inspect_ai", "Inspect and verifiers"),

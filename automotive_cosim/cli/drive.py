@@ -1,25 +1,17 @@
-"""``automotive-cosim drive``: one drive with many events, watched by an agent."""
+"""``automotive-cosim run --drive``: one drive with many events, watched by an agent."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from automotive_cosim.cli.conditions import given, takes_conditions
-from automotive_cosim.cli.derived import filled, settings_in, takes
-from automotive_cosim.cli.options import (
-    AgentName,
-    AsJson,
-    DriveChanges,
-    Force,
-    LimitSettings,
-    ModelName,
-    Seed,
-    print_json,
-)
+from automotive_cosim.cli.conditions import given
+from automotive_cosim.cli.derived import settings_in
+from automotive_cosim.cli.options import AsJson, DriveChanges, LimitSettings, print_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import InfrastructureError
@@ -29,32 +21,19 @@ if TYPE_CHECKING:
     from automotive_cosim.run.drive_row import DriveTrialRow
 
 
-@takes_conditions()
-@takes(LimitSettings)
-@takes(DriveChanges)
-def drive(
-    family: Annotated[
-        str, typer.Argument(help="Family of the drive; `show drives` lists them.", show_default=False)
-    ],
-    agent: AgentName = "rule-perfect",
-    model: ModelName = "rules",
-    scenario: Annotated[
-        str,
-        typer.Option(
-            help="A scenario's name or folder, or any .sumocfg or .net.xml(.gz), instead of the drive's own.",
-            show_default=False,
-        ),
-    ] = "",
-    seed: Seed = 0,
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Folder for the results.", show_default="runs/<time>-<family>-<agent>-seed<seed>"),
-    ] = None,
-    force: Force = False,
-    as_json: AsJson = False,
-    **settings: Any,
+def run_drive(
+    family: str,
+    agent: str,
+    model: str,
+    seed: int,
+    out: Path | None,
+    limited: LimitSettings,
+    settings: Mapping[str, Any],
+    *,
+    force: bool,
+    as_json: bool,
 ) -> None:
-    """Run one drive of ten to thirty minutes, in which an agent keeps watch."""
+    """Runs, records and tells one drive under the options of ``run``."""
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.settings import DriveSettings
@@ -67,8 +46,7 @@ def drive(
     from automotive_cosim.run.trial import Limits, run_trial
 
     under = Conditions.named(given(settings))
-    limited = filled(LimitSettings, settings)
-    limits = Limits().of_drives.within(limited.most_tokens, limited.most_seconds)
+    limits = Limits().of_drives.within(limited.tokens, limited.seconds)
     told = instructions(under.prompt)
     budget = AgentSettings(
         under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s, instructions=told
@@ -78,9 +56,9 @@ def drive(
         family,
         seed,
         under,
-        scenario,
+        settings["scenario"] or "",
         DriveSettings(**settings_in(DriveChanges, settings)),
-        limited.most_steps or limits.steps,
+        limited.steps or limits.steps,
         agent=player.name,
         model=player.model,
     )

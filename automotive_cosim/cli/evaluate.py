@@ -23,6 +23,7 @@ from automotive_cosim.cli.options import (
     AsJson,
     DriveChanges,
     LimitSettings,
+    Most,
     TasksFrom,
     print_json,
 )
@@ -30,7 +31,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError, UserError, install_hint
-from automotive_cosim.run.settings import Budget, EvaluationSettings, PlanSettings, RunSettings
+from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -41,14 +42,13 @@ if TYPE_CHECKING:
 
 
 @takes_conditions(lists=True)
-@takes(PlanSettings)
 @takes(EvaluationSettings, but=[each.name for each in TABLE])
 @takes(ExecutorSettings)
 @takes(RunSettings)
 @takes(Budget)
 @takes(DriveChanges)
-@takes(LimitSettings, but=["most_wall_seconds"])
 def evaluate(
+    most: Most = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
@@ -71,26 +71,26 @@ def evaluate(
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenarios import open_scenario
 
-    chosen, running = filled(PlanSettings, settings), filled(RunSettings, settings)
-    values: dict[str, Any] = read_plan(chosen.plan) if chosen.plan else {}
+    running = filled(RunSettings, settings)
+    values: dict[str, Any] = read_plan(running.plan) if running.plan else {}
     values |= settings_in(EvaluationSettings, settings) | values_of(settings)
     told = settings_in(DriveChanges, settings)
     values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
-    own = _limits(filled(LimitSettings, settings))
+    own = _limits(most or LimitSettings())
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = filled(Budget, settings)
     plan = make_plan(values)
-    folder = chosen.out or _folder(plan)
+    folder = running.out or _folder(plan)
     choice = filled(ExecutorSettings, settings)
     where = choice.opened()
     console = Console(highlight=False)
-    lacks, unit = plan.check(dry=chosen.dry_run), unit_of(plan.as_json())
+    lacks, unit = plan.check(dry=running.dry_run), unit_of(plan.as_json())
     check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     known = read_trials(folder) if (folder / "manifest.json").is_file() else {}
     needs = forecast(plan.jobs(), choice.processes, known.values())
-    if chosen.dry_run:
+    if running.dry_run:
         lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
         for line in (*forecast_in_words(needs, choice.processes), "nothing was run"):
             console.print(line, soft_wrap=True)
@@ -187,10 +187,12 @@ def _named(tasks: Sequence[str]) -> str:
 
 def _limits(told: LimitSettings) -> Json:
     """The limits of a plan that options set, of tasks and of drives."""
+    if told.wall is not None:
+        raise UserError("--most wall is a limit of `run`; in a plan, agent_s of [limits] is one")
     named = {
-        ("steps", "hard_steps", "drive_steps"): told.most_steps,
-        ("tokens", "drive_tokens"): told.most_tokens,
-        ("model_s", "drive_model_s"): told.most_seconds,
+        ("steps", "hard_steps", "drive_steps"): told.steps,
+        ("tokens", "drive_tokens"): told.tokens,
+        ("model_s", "drive_model_s"): told.seconds,
     }
     return {name: value for names, value in named.items() if value is not None for name in names}
 

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import reads_results
-from automotive_cosim.errors import UserError
-from automotive_cosim.exchange.settings import ExportFormats
 
 if TYPE_CHECKING:
     from automotive_cosim.exchange.recording import Recording
@@ -20,20 +17,27 @@ ROAD, SCENARIO, FCD, TABLE = "road.xodr", "scenario.xosc", "fcd.xml", "trajector
 
 
 @reads_results
-@takes(ExportFormats)
 def export(
     trial: Annotated[
         Path,
         typer.Argument(
-            help="Folder of `run` or `drive` with --out, or of one trial in pictures/ of `eval`.",
+            help="Folder of `run` with --out, or of one trial in pictures/ of `eval`.",
+            show_default=False,
+        ),
+    ],
+    formats: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="FORMAT...",
+            help="openscenario-1.3, openscenario-1.2, opendrive (which the scenario then names), osi, ssam, fcd, "
+            "csv or parquet.",
             show_default=False,
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="Folder for the files.", show_default="TRIAL/exchange")] = None,
-    **settings: Any,
 ) -> None:
     """Write a kept trial in the formats of others: OpenSCENARIO XML, OpenDRIVE, OSI, SSAM, FCD, CSV, Parquet."""
-    from automotive_cosim.exchange.needs import check_formats
+    from automotive_cosim.exchange.needs import OPENSCENARIO, check_formats
     from automotive_cosim.exchange.openscenario import write_openscenario
     from automotive_cosim.exchange.osi import trace_name, write_osi
     from automotive_cosim.exchange.recording import read_recording
@@ -42,31 +46,23 @@ def export(
     from automotive_cosim.formats.writing import make_folder
     from automotive_cosim.run.store import cannot_write
 
-    formats = filled(ExportFormats, settings)
-    if not formats:
-        raise UserError(
-            "nothing to write; give --openscenario 1.3, --opendrive, --osi, --ssam, --fcd, --csv or --parquet"
-        )
     check_formats(formats)
     recording = read_recording(trial)
     folder, written = out or trial / "exchange", []
-    road = folder / ROAD if formats.opendrive else None
-    trace = trace_name(recording) if formats.osi else ""
+    road = folder / ROAD if "opendrive" in formats else None
+    trace = trace_name(recording) if "osi" in formats else ""
     try:
         folder = make_folder(out) if out else make_folder(trial, "exchange")
+        versions = [version for word, version in OPENSCENARIO.items() if word in formats]
         for name, wanted, write in (
-            (ROAD, formats.opendrive, _write_road),
-            (
-                SCENARIO,
-                formats.openscenario,
-                partial(write_openscenario, version=formats.openscenario or "", road=road),
-            ),
-            (f"{trace}.osi", formats.osi, partial(write_osi, road=road)),
-            (f"{trace}.mcap", formats.osi, partial(write_osi, road=road)),
-            (f"{TABLE}.trj", formats.ssam, write_trajectories),
-            (FCD, formats.fcd, write_fcd),
-            (f"{TABLE}.csv", formats.csv, write_csv),
-            (f"{TABLE}.parquet", formats.parquet, write_parquet),
+            (ROAD, "opendrive" in formats, _write_road),
+            (SCENARIO, bool(versions), partial(write_openscenario, version="".join(versions[-1:]), road=road)),
+            (f"{trace}.osi", "osi" in formats, partial(write_osi, road=road)),
+            (f"{trace}.mcap", "osi" in formats, partial(write_osi, road=road)),
+            (f"{TABLE}.trj", "ssam" in formats, write_trajectories),
+            (FCD, "fcd" in formats, write_fcd),
+            (f"{TABLE}.csv", "csv" in formats, write_csv),
+            (f"{TABLE}.parquet", "parquet" in formats, write_parquet),
         ):
             if wanted:
                 write(recording, folder / name)

@@ -95,7 +95,6 @@ class Live(TrialObserver):
         """Starts with nothing shown.
 
         Args:
-            console: where to.
             by_hand: a person acts, whose typing no line may interrupt.
             brief: only what was said and done, and the verdict in one line.
         """

@@ -23,7 +23,6 @@ from automotive_cosim.cli import (
     bench,
     compare,
     doctor,
-    drive,
     evaluate,
     export,
     keep,
@@ -55,11 +54,11 @@ app = typer.Typer(
     name="automotive-cosim",
     help="Agents that operate the cockpit of a car in live SUMO traffic.",
     no_args_is_help=True,
+    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command(rich_help_panel=RUN)(run.run)
-app.command(rich_help_panel=RUN)(drive.drive)
 app.command("eval", rich_help_panel=RUN)(evaluate.evaluate)
 app.command(rich_help_panel=RUN)(search.search)
 app.command(rich_help_panel=READ)(serve.serve)

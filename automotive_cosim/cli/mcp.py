@@ -14,6 +14,7 @@ from automotive_cosim.errors import SetupError, UserError, install_hint
 @takes(McpSettings)
 def mcp(**settings: Any) -> None:
     """Serve episodes to any assistant that speaks the Model Context Protocol."""
+    import os
     import secrets
     import threading
     from contextlib import closing
@@ -24,12 +25,12 @@ def mcp(**settings: Any) -> None:
         if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
             raise
         raise SetupError(f"the mcp package is missing; install it with `{install_hint('doors')}`") from error
-    from automotive_cosim.service import EpisodeService, ServiceLimits
+    from automotive_cosim.service import EpisodeService
 
     told = filled(McpSettings, settings)
     if told.scenarios is not None and not told.scenarios.is_dir():
         raise UserError(f"{told.scenarios} is not a folder; give --scenarios a folder of scenarios")
-    with closing(EpisodeService(limits=ServiceLimits(told.episodes, told.idle_s))) as service:
+    with closing(EpisodeService()) as service:
         server = make_server(service, told.interface, told.scenarios)
         if told.http is None:
             # Not on this thread: the server cannot be interrupted while it waits for standard input.
@@ -39,7 +40,8 @@ def mcp(**settings: Any) -> None:
         else:
             from automotive_cosim.doors.mcp_http import serve_http
 
-            (host, port), token = told.http, told.token or secrets.token_urlsafe(24)
+            (host, port) = told.http
+            token = os.environ.get("AUTOMOTIVE_COSIM_MCP_TOKEN") or secrets.token_urlsafe(24)
             typer.echo(f"http://{host}:{port}/mcp?token={token}")
             try:
                 serve_http(server, host, port, token)

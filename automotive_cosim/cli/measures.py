@@ -12,12 +12,12 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.measures.thresholds import Thresholds
 
 
-@takes(Thresholds, only=["ttc_s", "range_m"])
+@takes(Thresholds, only=["ttc_s"])
 def measures(
     record: Annotated[
         Path,
         typer.Argument(
-            help="Folder of `run`, `drive` or `eval`, of one of its trials in pictures/, or a road.jsonl.gz.",
+            help="Folder of `run` or `eval`, of one of its trials in pictures/, or a road.jsonl.gz.",
             show_default=False,
         ),
     ],
@@ -41,7 +41,6 @@ def measures(
     Those of an evaluation have a first column with the trial.
     """
     from automotive_cosim.exchange.needs import check_formats
-    from automotive_cosim.exchange.settings import ExportFormats
     from automotive_cosim.exchange.trajectories import write_frame
     from automotive_cosim.formats.writing import write_whole
     from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
@@ -49,7 +48,7 @@ def measures(
     from automotive_cosim.run.road import read_record, roads_in
 
     roads = {"": record} if record.is_file() else roads_in(record)
-    check_formats(ExportFormats(parquet=out is not None and out.suffix == ".parquet"))
+    check_formats(["parquet"] if out is not None and out.suffix == ".parquet" else [])
     thresholds = filled(Thresholds, settings)
     ego = None if everyone else "ego"
     kind: type[Encounter] | type[PairReading] = PairReading if readings else Encounter

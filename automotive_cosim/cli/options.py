@@ -9,15 +9,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial, wraps
 from pathlib import Path
-from typing import Annotated, ParamSpec
+from typing import Annotated, ParamSpec, get_type_hints
 
 import typer
 from annotated_types import Ge, Le
 
+from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.derived import number_in
 from automotive_cosim.cli.terminal import escaped, print_alone
-from automotive_cosim.errors import UserError
-from automotive_cosim.formats.annotations import Option
+from automotive_cosim.errors import UnknownNameError, UserError
 
 P = ParamSpec("P")
 
@@ -97,14 +97,10 @@ Seed = Annotated[
         parser=partial(number_in, int, (Ge(0), Le(MOST_SEED))),
     ),
 ]
-AgentName = Annotated[
-    str,
-    typer.Option(
-        "--agent",
-        help="Agent; `agents` lists them; package.module:Class is one of your own, "
-        "a2a:http://HOST:PORT one that speaks A2A.",
-    ),
-]
+AGENT_HELP = (
+    "Agent; `agents` lists them; package.module:Class is one of your own, a2a:http://HOST:PORT one that speaks A2A."
+)
+AgentName = Annotated[str, typer.Option("--agent", help=AGENT_HELP)]
 ModelName = Annotated[
     str,
     typer.Option(
@@ -119,19 +115,43 @@ ModelName = Annotated[
 class LimitSettings:
     """Limits of a trial that are set otherwise; None leaves them as they are."""
 
-    most_steps: Annotated[int | None, Ge(1), Le(100_000)] = None
-    """Actions, waits among them, after which an episode is judged as it is; a drive goes on unwatched."""
-    most_tokens: Annotated[int | None, Ge(1), Le(10**9), Option(default="2 million; 20 million for a drive")] = None
-    """The same for tokens to and from the model."""
-    most_seconds: Annotated[int | None, Ge(1), Le(10**6), Option(default="1800; 14400 for a drive")] = None
-    """The same for the time to wait for the model in all, in seconds."""
-    most_wall_seconds: Annotated[int | None, Ge(1), Le(10**6)] = None
-    """The same for real time since the hand-over or the departure, in seconds."""
+    steps: Annotated[int | None, Le(100_000)] = None
+    tokens: Annotated[int | None, Le(10**9)] = None
+    seconds: Annotated[int | None, Le(10**6)] = None
+    """Of waiting for the model."""
+    wall: Annotated[int | None, Le(10**6)] = None
 
     @property
     def wall_s(self) -> float:
         """Most real time in seconds."""
-        return math.inf if self.most_wall_seconds is None else float(self.most_wall_seconds)
+        return math.inf if self.wall is None else float(self.wall)
+
+
+def _read_limits(text: str) -> LimitSettings:
+    """Limits such as ``steps=40,tokens=20000``."""
+    hints = get_type_hints(LimitSettings, include_extras=True)
+    found = {}
+    for word in words("most", text):
+        name, _, number = word.partition("=")
+        if name not in hints:
+            raise UnknownNameError("limit in --most", name, hints)
+        found[name] = number_in(int, (Ge(1), *hints[name].__metadata__), number)
+    return LimitSettings(**found)
+
+
+Most = Annotated[
+    LimitSettings | None,
+    typer.Option(
+        "--most",
+        help="Other limits of a trial, as in steps=40,tokens=20000,seconds=60: actions, waits among them; tokens "
+        "to and from the model (2 million; 20 million for a drive); seconds to wait for it in all (1800; 14400). "
+        "At one of them an episode is judged as it is, and a drive goes on unwatched; so it is, with `run`, after "
+        "wall seconds of real time since the hand-over or the departure.",
+        metavar="LIMITS",
+        parser=_read_limits,
+        show_default=False,
+    ),
+]
 
 
 @dataclass(frozen=True, slots=True)

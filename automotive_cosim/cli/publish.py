@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import secrets
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from annotated_types import Ge, Le
 
 from automotive_cosim.cli.batches import ExecutorSettings
-from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json, reads_results
+from automotive_cosim.cli.derived import filled, number_in, takes
+from automotive_cosim.cli.options import MOST_SEED, AsJson, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.publish.settings import VerifySettings
 
 MOST_LISTED = 50
 """How many problems are printed."""
@@ -41,20 +42,35 @@ def bundle(
 
 
 @app.command()
-@takes(VerifySettings)
 @takes(ExecutorSettings, only=["workers"])
 def verify(
     path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
+    replay: Annotated[
+        int,
+        typer.Option(
+            help="How many drives to replay and compare bit for bit.",
+            metavar="N",
+            parser=partial(number_in, int, (Ge(0), Le(10**6))),
+        ),
+    ] = 3,
+    replay_seed: Annotated[
+        int | None,
+        typer.Option(
+            help="Seed that draws the drives to replay.",
+            metavar="N",
+            parser=partial(number_in, int, (Ge(0), Le(MOST_SEED))),
+            show_default="a new one each time",
+        ),
+    ] = None,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
     """Check an evaluation or a bundle; exit code 1 if something does not match."""
     from automotive_cosim.publish.verify import verify as verified
 
-    told = filled(VerifySettings, settings)
-    seed = secrets.randbelow(2**31) if told.seed is None else told.seed
+    seed = secrets.randbelow(2**31) if replay_seed is None else replay_seed
     workers = filled(ExecutorSettings, settings).processes
-    found = verified(path, replays=told.replays, seed=seed, workers=workers)
+    found = verified(path, replays=replay, seed=seed, workers=workers)
     if as_json:
         problems = [asdict(problem) for problem in found.problems]
         print_json({"ok": not problems, "facts": found.facts, "problems": problems, "unknown": found.unknown})

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, print_json, reads_results
 from automotive_cosim.contracts.plain import clock, counted
-from automotive_cosim.errors import UserError, install_hint
-from automotive_cosim.report.settings import PlaybackSettings
+from automotive_cosim.errors import install_hint
 
 if TYPE_CHECKING:
     from automotive_cosim.run.effect import ActEffect
@@ -73,7 +71,7 @@ def _safety(folder: Path, agent: str) -> None:
 
 
 TrialFolder = Annotated[
-    Path, typer.Argument(help="Results folder of `run`, `drive`, `eval`, `search` or `study`.", show_default=False)
+    Path, typer.Argument(help="Results folder of `run`, `eval`, `search` or `study`.", show_default=False)
 ]
 TrialId = Annotated[
     str,
@@ -118,7 +116,6 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
 
 
 @reads_results
-@takes(PlaybackSettings)
 def replay(
     folder: TrialFolder,
     episode: TrialId = "",
@@ -127,20 +124,13 @@ def replay(
         typer.Option(help="Leave out what this step commanded, and say what that changes; may be repeated."),
     ] = None,
     as_json: AsJson = False,
-    **settings: Any,
 ) -> None:
-    """Replay the actions of a stored trial and compare the traces, or play back its record.
+    """Replay the actions of a stored trial and compare the traces.
 
-    Exit code 1 if the traces differ. With --play or --film, show what was recorded; nothing runs again.
+    Exit code 1 if the traces differ.
     """
     from automotive_cosim.run.rerun import rerun
 
-    shown = filled(PlaybackSettings, settings)
-    if shown.play or shown.film is not None:
-        if episode or as_json:
-            raise UserError("--play and --film show the record of one `run`; omit the episode and --json")
-        _show_record(folder, shown.film, shown.speed)
-        return
     if without:
         from automotive_cosim.run.attribution import attribute as measured
 
@@ -160,24 +150,3 @@ def replay(
         )
         raise typer.Exit(1)
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
-
-
-def _show_record(folder: Path, film: Path | None, speed: float) -> None:
-    """Prints a record step by step, at its pace, or writes its screens as an animation."""
-    from time import sleep
-
-    from automotive_cosim.report.playback import frames, write_film
-
-    if film is not None and film.suffix not in (".webp", ".gif"):
-        raise UserError(f"{film} is not an animation; give --film a name ending in .webp or .gif")
-    shown = list(frames(folder))
-    if film is not None:
-        write_film(shown, film, speed)
-        typer.echo(f"{film} written, {counted(len(shown), 'step')}")
-        return
-    before_s = 0.0
-    for frame in shown:
-        sleep((frame.since_s - before_s) / speed)
-        before_s = frame.since_s
-        typer.echo(frame.words)
-        typer.echo(f"     {frame.picture}")

@@ -1,4 +1,4 @@
-"""``automotive-cosim run``: runs, shows, judges and records one episode."""
+"""``automotive-cosim run``: runs, shows, judges and records one trial."""
 
 from __future__ import annotations
 
@@ -6,18 +6,20 @@ from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
 from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.options import (
-    AgentName,
+    AGENT_HELP,
     AsJson,
+    DriveChanges,
     Force,
     LimitSettings,
     ModelName,
+    Most,
     Seed,
     TasksFrom,
     print_json,
@@ -28,6 +30,7 @@ from automotive_cosim.contracts.given import PLACE, GeoInput
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.settings import ANYWHERE, DEFAULT_TASK, EpisodeSettings
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.formats.annotations import option
 from automotive_cosim.run.settings import SingleSettings
 
 if TYPE_CHECKING:
@@ -61,26 +64,44 @@ PAIR_TITLES = ("Knows where it is", "The same agent, place withheld")
 
 
 @takes_conditions()
-@takes(LimitSettings)
 @takes(EpisodeSettings, but=["seed"])
 @takes(SingleSettings)
+@takes(DriveChanges)
 def run(
-    agent: AgentName = "asurada",
+    agent: Annotated[str, typer.Option(help=AGENT_HELP, show_default="asurada; rule-perfect on a drive")] = "",
     model: ModelName = "rules",
     tasks_from: TasksFrom = None,
+    most: Most = None,
     seed: Seed = 0,
     force: Force = False,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
-    """Run one episode: a task, an agent, a seed.
+    """Run one episode or drive: a task or a family of drives, an agent, a seed.
 
     Without options, a car in Paris drives at 80 km/h where 50 is posted, and the agent is to warn the driver.
     """
-    chosen, limited = settings_in(EpisodeSettings, settings), filled(LimitSettings, settings)
+    chosen, limited = settings_in(EpisodeSettings, settings), most or LimitSettings()
     how = filled(SingleSettings, settings)
     scenario = chosen.get("scenario")
     tell_opening(*filter(None, [scenario]))
+    _check_subject(settings)
+    if how.drive:
+        from automotive_cosim.cli.drive import run_drive
+
+        run_drive(
+            how.drive,
+            agent or "rule-perfect",
+            model,
+            seed,
+            how.out,
+            limited,
+            settings,
+            force=force,
+            as_json=as_json,
+        )
+        return
+    agent = agent or "asurada"
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import parts
     from automotive_cosim.episode.own_prompt import instructions
@@ -93,7 +114,7 @@ def run(
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
-    limits = Limits().within(limited.most_tokens, limited.most_seconds)
+    limits = Limits().within(limited.tokens, limited.seconds)
     off = parts(how.without)
     under = Conditions.named(given(settings))
 
@@ -109,7 +130,7 @@ def run(
     setup = EpisodeSetup(
         **{"task": _default_task(chosen), **chosen},
         seed=seed,
-        max_steps=limited.most_steps,
+        max_steps=limited.steps,
         conditions=under,
         agent=player.name,
         model=player.model,
@@ -147,6 +168,18 @@ def run(
             raise InfrastructureError(row.error)
 
 
+def _check_subject(settings: Mapping[str, Any]) -> None:
+    """Refuses options of tasks beside ``--drive``, and those of drives without it."""
+    is_drive = bool(settings["drive"])
+    kinds = (EpisodeSettings, SingleSettings) if is_drive else (DriveChanges,)
+    fits = {"scenario", "drive", "out"}
+    given = [(kind, name) for kind in kinds for name in settings_in(kind, settings)]
+    wrong = [option(kind, name).replace("--gps", "--no-gps") for kind, name in given if name not in fits]
+    if wrong:
+        other = "a task; omit it with" if is_drive else "a drive; give"
+        raise UserError(f"{wrong[0]} is about {other} --drive")
+
+
 def _check_pair(player: Agent, under: Conditions) -> None:
     if player.name in ("human", "script"):
         raise UserError(f"--pair runs an agent twice; omit it with {player.name}")
@@ -167,7 +200,6 @@ def _recorded(
     wall_s: float,
     as_json: bool,
 ) -> TrialRow:
-    """Runs an episode and records it."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
     from automotive_cosim.report.film import Film

@@ -18,7 +18,7 @@ from automotive_cosim.cli.options import AsJson, print_json, tell_opening
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
+from automotive_cosim.osm.settings import ImportOptions
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -51,14 +51,13 @@ def list_scenarios(as_json: AsJson = False) -> None:
 
 
 MOST_STREETS, MOST_OF_A_STREET = 8, 6
-"""Streets, and edges of each, that `scenarios show` lists; `--edges` lists all."""
+"""Streets, and edges of each, that `scenarios show` lists; `--json` lists all."""
 WHICH = "A shipped scenario's name, a scenario's folder, any .sumocfg or .net.xml(.gz)"
 
 
 @app.command("show")
 def show(
     scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")],
-    edges: Annotated[bool, typer.Option("--edges", help="List every edge that is open to cars.")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Show one scenario: its place, time, weather, ego trips, and the edges that options such as --measure name."""
@@ -69,14 +68,9 @@ def show(
     found = open_scenario(scenario)
     known = streets(found)
     if as_json:
-        print_json({**_shown(found), **_edges_json(known, all_of_them=edges)})
+        print_json({**_shown(found), **_edges_json(known)})
         return
     tell_notes([found], runs=False)
-    if edges:
-        for street in known:
-            for edge in street.edges:
-                typer.echo("\t".join((edge.edge_id, street.name or "-", f"{edge.length_m:.0f} m", edge.road_class)))
-        return
     typer.echo(f"{found.name}: {found.title}\n{found.about.strip()}\n")
     for label, value in (
         ("folder", found.folder),
@@ -92,7 +86,7 @@ def show(
         typer.echo(f"{f'trip {place}':<9}{trip.name}: {trip.about or f'{trip.from_edge} to {trip.to_edge}'}")
     for place, line in enumerate(_edges_told(known)):
         typer.echo(f"{'' if place else 'edges':<9}{line}")
-    typer.echo(f"{'':<9}all of them: automotive-cosim scenarios show {scenario} --edges")
+    typer.echo(f"{'':<9}all of them: automotive-cosim scenarios show {scenario} --json")
 
 
 def _edges_told(known: Sequence[StreetEdges]) -> Iterator[str]:
@@ -108,10 +102,7 @@ def _edges_told(known: Sequence[StreetEdges]) -> Iterator[str]:
         yield f"{street.name or 'without a name'}: {', '.join(ids[:MOST_OF_A_STREET])}{more}"
 
 
-def _edges_json(known: Sequence[StreetEdges], *, all_of_them: bool) -> Json:
-    """The edges as JSON: those that are told in words, or all."""
-    streets = known if all_of_them else [street for street in known if street.name][:MOST_STREETS] or known[:1]
-    most = None if all_of_them else MOST_OF_A_STREET
+def _edges_json(known: Sequence[StreetEdges]) -> Json:
     return {
         "edge_count": sum(len(street.edges) for street in known),
         "edges": [
@@ -121,8 +112,8 @@ def _edges_json(known: Sequence[StreetEdges], *, all_of_them: bool) -> Json:
                 "length_m": round(edge.length_m, 1),
                 "road_class": edge.road_class,
             }
-            for street in streets
-            for edge in street.edges[:most]
+            for street in known
+            for edge in street.edges
         ],
     }
 
@@ -292,7 +283,6 @@ def import_scenario(
 
 
 @app.command("download")
-@takes(DownloadLimits, but=("tries",))
 def download_map(
     bbox: Annotated[
         Area,
@@ -312,14 +302,13 @@ def download_map(
         ),
     ],
     out: Annotated[Path, typer.Option(help="File to create, for `scenarios import`.")] = Path("map.osm"),
-    **settings: Any,
 ) -> None:
     """Fetch the roads of an area from an Overpass server of your choice."""
     from automotive_cosim.osm.folder import ATTRIBUTION
     from automotive_cosim.osm.overpass import download
 
     with _progress() as tell:
-        found = download(endpoint, bbox, out, filled(DownloadLimits, settings), tell=tell)
+        found = download(endpoint, bbox, out, tell=tell)
     dated = f", as of {found.map_date}" if found.map_date else ""
     typer.echo(f"{out}: {megabytes_in_words(found.size_mb)}{dated}\n{ATTRIBUTION}")
     if found.note:

@@ -64,6 +64,7 @@ def search(
     from automotive_cosim.report.stats import distributions
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.settings import Budget
+    from automotive_cosim.run.worker import WARM
     from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
     from automotive_cosim.safety.due import DueScreen, with_times
     from automotive_cosim.safety.findings import as_json as findings_json
@@ -128,9 +129,9 @@ def search(
         console.print(f"{told}; {margin}; {counted(len(found.minimal), 'minimal failure')}", soft_wrap=True)
 
     with (
-        closing(Simulations(count_limit=2)) as simulations,
+        closing(Simulations(count_limit=WARM)) as simulations,
         where,
-        trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s) as run,
+        trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s, simulations=simulations) as run,
     ):
 
         def note(row: TrialRow | None = None) -> None:
@@ -144,7 +145,7 @@ def search(
         note()
         run.tell = note
         screen = DueScreen(space, plan, simulations, folder)
-        for line in screen.check(how.seed):
+        for line in screen.check():
             console.print(line, markup=False, soft_wrap=True)
         run.space = space = screen.space
         chooses = make_sampler(how.sampler, space, laid, how.seed)
@@ -162,12 +163,15 @@ def search(
         if found.minimal and agent not in CAREFUL and not found.interrupted:
             careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})
             try:
-                with trying(space, careful, folder / CAREFUL_FOLDER) as watcher:
+                with trying(space, careful, folder / CAREFUL_FOLDER, simulations=simulations) as watcher:
                     try_carefully(found, watcher)
             except KeyboardInterrupt:
                 found.interrupted = True
-        if not found.interrupted:
-            blame(found, lambda failure: _act(folder, failure, space, simulations))
+        try:
+            if not found.interrupted:
+                blame(found, lambda failure: _act(folder, failure, space, simulations))
+        except KeyboardInterrupt:
+            found.interrupted = True
         note()
         page = write_findings(folder, found, agent, model, about)
     if order.save is not None and (found.minimal or found.not_reduced):
@@ -188,10 +192,11 @@ def search(
 def _act(folder: Path, failure: MinimalFailure, space: Space, simulations: Simulations) -> str:
     """The act, or the missing act, that made a failure."""
     from automotive_cosim.errors import CosimError
-    from automotive_cosim.run.attribution import attribute, culprit
+    from automotive_cosim.run.attribution import attribute, culprit, path_of, read_effects
 
     try:
-        return culprit(attribute(folder, failure.trial, simulations=simulations), space.rule.events)
+        known = read_effects(path_of(folder, failure.trial))
+        return culprit(known or attribute(folder, failure.trial, simulations=simulations), space.rule.events)
     except CosimError as error:
         return f"not known: {error}"
 

@@ -48,7 +48,7 @@ def serve(
             raise UserError(f"{shown[0]} is itself a record; give a folder of records")
         game = Game(shown[0]) if told.play else None
         dealt = PeopleStudy(read_study(told.study), shown[0] / told.study.stem) if told.study else None
-    with WebServer(shown, told.host, told.port, game, dealt) as server:
+    with WebServer(shown, *told.http, game, dealt) as server:
         typer.echo(f"Open {server.address}")
         if dealt is not None:
             typer.echo(f"Participants open {server.people_address}")

@@ -34,7 +34,6 @@ class Plain:
         """The stream that rich's consoles write to: they use this attribute of a wrapper."""
 
     def write(self, text: str) -> int:
-        """Writes the text as plain text."""
         return self._stream.write(plain(text))
 
     def writelines(self, lines: Iterable[str]) -> None:

@@ -32,7 +32,6 @@ def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
     """All widgets that have texts, react to touch or scroll, in drawing order.
 
     Args:
-        screen: the tree.
         scale: pixels per logical pixel.
     """
     return tuple(chain.from_iterable(_part(child, scale) for child in screen.children))

@@ -16,7 +16,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.cockpit.calls import function_named
-from automotive_cosim.cockpit.numbers import number_in, whole_in
+from automotive_cosim.cockpit.functions import number_in, whole_in
 from automotive_cosim.contracts import (
     UNCALLED,
     Action,
@@ -342,9 +342,7 @@ def signatures(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = Fal
     """The same in fewer words: each action as a name with its fields, those in brackets optional.
 
     Args:
-        kinds: the actions to list.
         by_point: whether there is no list of elements, so that a target is a point.
-        is_told: whether each says what it does.
     """
     return "\n".join(
         f"- {kind}({', '.join(_signature(takes, by_point))})" + (f": {_about(takes, by_point)}" if is_told else "")
@@ -383,7 +381,6 @@ def schema_of(kinds: Collection[ActionType], indices: Sequence[int] | None) -> J
     target given in one way.
 
     Args:
-        kinds: the actions.
         indices: those of the elements that can be acted on; None if a target is a point.
     """
     members = []
@@ -450,7 +447,6 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
     """Performs an action on the cockpit.
 
     Args:
-        action: a checked action.
         cockpit: the cockpit, which decides what is possible and says why not.
         elements: the list that the agent saw, to which an index refers; empty if it was given none.
 

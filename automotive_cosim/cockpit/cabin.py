@@ -351,7 +351,6 @@ def parked_c(cabin_c: float, minutes: float, controls: Controls, outside: Air, s
     """Temperature of the air in a parked car after a time, in the same model with the sun on it, solved exactly.
 
     Args:
-        cabin_c: temperature now.
         minutes: how long from now.
         controls: how it is left. With ``fan_pct`` the climate control holds ``set_c``, at whatever fan speed up to
             full that takes, as far as the compressor and the heater can.

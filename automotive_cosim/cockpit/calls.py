@@ -158,8 +158,6 @@ def call(state: State, name: str, arguments: Mapping[str, Any]) -> Feedback:
     """Does what a function says, as if its widget had been touched.
 
     Args:
-        state: of the car.
-        name: of the function.
         arguments: checked ones (``CarFunction.read``).
 
     Returns:

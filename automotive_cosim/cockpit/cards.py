@@ -100,7 +100,6 @@ def switch(
     """A tile that turns a signal on and off.
 
     Args:
-        signal: what it turns.
         key: if it is not that of the signal's control; so for ``name``.
         group: tells it apart from those of the same name in other groups for whoever hears it alone.
         disabled: why it cannot be used now.
@@ -133,7 +132,6 @@ def levels(
     """A tile that goes round its levels; a value that is none of them counts as the first, 0 is off.
 
     Args:
-        signal: what it sets.
         steps: each value and what it is called.
         key: if it is not that of the signal's control; so for ``name`` and ``icon``.
         group: as of ``switch``.
@@ -205,11 +203,8 @@ def stepper(
     """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once.
 
     Args:
-        signal: what they change.
-        signals: the values of all.
         key: of the value, if it is not that of the signal's control; those of the buttons begin with it.
         name: as ``key``.
-        style: of the value.
         locked: why it is locked while driving; empty if it is not.
         gauge: whether it shows its ends, and by a bar under the value how far it is between them.
         bare: whether the value stands elsewhere.
@@ -272,10 +267,6 @@ def schedule(
 
     Args:
         key: of the switch, like ``text`` and ``icon``; those of the time begin with it.
-        timer: what is set.
-        keep: what holds a timer.
-        ready: said when it is switched on.
-        off: said when it is switched off.
     """
 
     def moved(by_min: int) -> Put:
@@ -329,11 +320,8 @@ def rows(
 
     Args:
         key: its own, under which the state remembers how far it is scrolled.
-        name: what it lists.
-        entries: what is listed.
         entry: makes the row of an entry, from its index.
         columns: entries side by side.
-        height: of one row.
         gap: between rows and columns.
     """
 

@@ -34,7 +34,6 @@ def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int
     Args:
         width: pixels.
         height: pixels.
-        lamps: the lamps that are lit.
         windshield: its opacity in tenths.
         rear_window: its opacity in tenths.
         night: whether to use the night palette.
@@ -153,7 +152,6 @@ def _lamps(brush: ImageDraw.ImageDraw, place: Callable[[Outline], Outline], lamp
 
 
 def _oval(x: float, y: float, across: float, down: float, power: float) -> Outline:
-    """A superellipse."""
     turn = np.linspace(0, 2 * np.pi, 96, endpoint=False)
     cos, sin = np.cos(turn), np.sin(turn)
     xs = x + across * np.sign(cos) * np.abs(cos) ** (2 / power)

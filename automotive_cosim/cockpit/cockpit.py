@@ -13,13 +13,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import timedelta
 from difflib import get_close_matches
 from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
+from PIL import Image
 
 from automotive_cosim.cockpit import accessibility, calls, language, road
 from automotive_cosim.cockpit.app import Where
@@ -34,23 +35,39 @@ from automotive_cosim.cockpit.belongings import NOTHING, Belongings, bring
 from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.changes import CarChange, schedule
 from automotive_cosim.cockpit.commands import AskDriver, Set
-from automotive_cosim.cockpit.content import content
-from automotive_cosim.cockpit.departure import put_back
-from automotive_cosim.cockpit.display import Display
+from automotive_cosim.cockpit.drawing import pixels_of
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Back, Key, Show, write
 from automotive_cosim.cockpit.missing_parts import Lacking
-from automotive_cosim.cockpit.occupants import Occupant, take_seats
+from automotive_cosim.cockpit.notices import TYRES
+from automotive_cosim.cockpit.occupants import Occupant, in_words, take_seats
 from automotive_cosim.cockpit.picture import picture
 from automotive_cosim.cockpit.places import Gazetteer
-from automotive_cosim.cockpit.readings import readings
 from automotive_cosim.cockpit.registry import apps, by_any_name, docked, pages
+from automotive_cosim.cockpit.render import render, repaint
 from automotive_cosim.cockpit.restrictions import REASONS, Restriction
 from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.sensing import sense
-from automotive_cosim.cockpit.signals import HMI, LIGHTS, LINK, LeafKind, Signal, Signals, named
+from automotive_cosim.cockpit.signals import (
+    ADAS,
+    BODY,
+    ENERGY,
+    HMI,
+    HVAC,
+    LIGHTS,
+    LINK,
+    MEDIA,
+    MOTION,
+    OUTSIDE,
+    SEAT,
+    LeafKind,
+    Signal,
+    Signals,
+    named,
+)
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import CommandRecord, Message, State
+from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.cockpit.widgets import Button, Field, MapView, Rows, Screen, Slider, Widget
 from automotive_cosim.contracts import (
@@ -72,6 +89,127 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.text import say, say_in
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """A widget tree and its picture, which is never modified."""
+
+    screen: Screen
+    picture: Image.Image
+    pixels: npt.NDArray[np.uint8]
+
+
+class Display:
+    """Keeps the last picture and the last list. Copies are independent: what they keep is never modified."""
+
+    def __init__(self, scale: float) -> None:
+        """Nothing is drawn yet; the picture has ``scale`` pixels per logical pixel."""
+        self._scale = scale
+        self._frame: _Frame | None = None
+        self._listed: tuple[Screen, tuple[Element, ...]] | None = None
+
+    @property
+    def scale(self) -> float:
+        """Pixels of the picture per logical pixel."""
+        return self._scale
+
+    def elements(self, screen: Screen) -> tuple[Element, ...]:
+        """The accessibility tree as a list."""
+        if self._listed is None or self._listed[0] is not screen:
+            self._listed = screen, accessibility.elements(screen, self.scale)
+        return self._listed[1]
+
+    def screenshot(self, screen: Screen) -> npt.NDArray[np.uint8]:
+        """The picture, (height, width, 3), RGB, read-only; the same array as long as nothing changes."""
+        if self._frame is None or self._frame.screen is not screen:
+            if self._frame is not None and self._frame.screen == screen:
+                self._frame = replace(self._frame, screen=screen)
+            else:
+                self._frame = self._drawn(screen)
+        return self._frame.pixels
+
+    def _drawn(self, screen: Screen) -> _Frame:
+        """Draws the frame, or only where it differs from the last one."""
+        if self._frame is None:
+            picture = render(screen, self._scale).image
+            return _Frame(screen, picture, pixels_of(picture))
+        picture, boxes = repaint(self._frame.screen, self._frame.picture, screen)
+        pixels = self._frame.pixels.copy()
+        for box in boxes:
+            edges = box.edges(self.scale)
+            left, top, right, bottom = edges
+            pixels[top:bottom, left:right] = pixels_of(picture.crop(edges))
+        pixels.flags.writeable = False
+        return _Frame(screen, picture, pixels)
+
+
+USED: tuple[Signal[Any], ...] = (ENERGY.LEVEL, ENERGY.RANGE, MEDIA.PLAYED, MEDIA.TRACK, MEDIA.ARTIST)
+BODIES: tuple[Signal[Any], ...] = (*TYRES, SEAT.DRIVER_TEMPERATURE, SEAT.PASSENGER_TEMPERATURE)
+
+
+def put_back(state: State, departed: State, surroundings: Surroundings, way: timedelta, *, with_air: bool) -> None:
+    """Puts a state back and senses the surroundings anew.
+
+    Args:
+        state: changed in place.
+        departed: the same cockpit's at departure.
+        surroundings: the present ones, at the departure's time of day.
+        with_air: whether air, glass, seats and tyres are put back too.
+    """
+    for signal in (*USED, *(BODIES if with_air else ())):
+        state.signals[signal] = departed.signals[signal]
+    if with_air:
+        state.cabin, state.tyres = departed.cabin, departed.tyres
+    departed_s, state.outside = state.departed_s, None  # the trip computer starts anew
+    if state.heard is not None:
+        state.heard = replace(state.heard, local_time=state.heard.local_time - way)
+    sense(state, surroundings, 0.0)
+    state.departed_s = departed_s  # what is still to arrive arrives when it would have
+    for data in state.apps:
+        data.put_back(state, departed)
+    state.notices = tuple(
+        replace(notice, clock=state.clock) for notice in state.notices if notice.icon is not Icon.CALL_MISSED
+    )
+
+
+def readings(state: State) -> VehicleState:
+    """The present readings."""
+    now = state.signals
+    return VehicleState(
+        speed_kmh=now[MOTION.SPEED],
+        gear=now[MOTION.GEAR],
+        restrictions=int(state.restrictions),
+        ambient_temperature_c=now[OUTSIDE.TEMPERATURE],
+        cabin_temperature_c=now[HVAC.CABIN_TEMPERATURE],
+        cabin_humidity_pct=now[HVAC.CABIN_HUMIDITY],
+        rain_intensity_pct=now[BODY.RAIN_INTENSITY],
+        driver_temperature_set_c=now[HVAC.DRIVER_TEMPERATURE],
+        fan_speed_pct=now[HVAC.FAN_SPEED],
+        is_low_beam_on=now[LIGHTS.LOW_BEAM],
+        is_high_beam_on=now[LIGHTS.HIGH_BEAM],
+        is_front_fog_on=now[LIGHTS.FRONT_FOG],
+        is_rear_fog_on=now[LIGHTS.REAR_FOG],
+        is_hazard_on=now[LIGHTS.HAZARD],
+        energy_level_pct=now[ENERGY.LEVEL],
+        range_km=now[ENERGY.RANGE] / 1000,
+        speed_limit_sign_kmh=now[ADAS.LIMIT_SIGN],
+        leader_gap_m=now[ADAS.LEADER_DISTANCE],
+        leader_time_to_collision_s=now[ADAS.LEADER_TIME_TO_COLLISION],
+        aboard=in_words(now),
+    )
+
+
+def content(state: State) -> dict[str, tuple[str, ...]]:
+    """Names by kind, for tasks that draw one of them.
+
+    ``contacts`` (those that the list shows even while driving), ``favourite_contacts``, ``threads`` and
+    ``unread`` (senders of messages, and of unread ones), ``places``, ``favourite_places``, ``streets`` (neither
+    among these nor hidden behind another in a search), ``playlists``, ``tracks``, ``podcasts``, ``fm``, ``dab``
+    (stations).
+    """
+    return {kind: names for data in state.apps for kind, names in data.names(state).items()}
+
 
 W = TypeVar("W", bound=Widget)
 
@@ -118,7 +256,6 @@ class Cockpit:
         """A cockpit before its first ``sense``.
 
         Args:
-            network: the network for the map.
             rng: draws media, places, people and the driver's stored data.
             aboard: who is in the car besides the driver.
             cabin: fields of ``CabinStart``.
@@ -133,7 +270,6 @@ class Cockpit:
             lookout: whether home and map show what the car notices around, ahead and aboard.
             driven_s: how long the driver had been driving without a break before departure.
             places_on: edges on which places may lie; None means any.
-            size: size of the display.
             width: width of the screenshot in pixels, by default that of the size; the height follows.
 
         Raises:
@@ -168,7 +304,6 @@ class Cockpit:
             self.inject(path, value)
 
     def copy(self) -> Cockpit:
-        """An independent copy."""
         twin = Cockpit.__new__(Cockpit)
         twin._state = self._state.copy()
         twin._tree = self._tree
@@ -292,7 +427,6 @@ class Cockpit:
         Args:
             x: where the finger touches, in pixels of the screenshot.
             y: where the finger touches, in pixels of the screenshot.
-            direction: direction of the movement.
             distance_px: its length. A slider takes the value where the finger lifts, a list moves by the rows
                 passed, the map moves along. Without it: a tenth of the range, a page, over a third of the map.
         """
@@ -322,7 +456,6 @@ class Cockpit:
 
         Args:
             key: of the list or of something in it; empty for the first list on the screen.
-            direction: the direction to scroll.
         """
         lists = [widget for widget in self._screen.walk() if isinstance(widget, Rows)]
         if key:
@@ -380,7 +513,6 @@ class Cockpit:
         return self._perform(Back())
 
     def open_app(self, name: str) -> Feedback:
-        """Opens an app by its name."""
         wanted = " ".join(name.casefold().split())
         if wanted not in by_any_name():
             page_of = docked().get(wanted)
@@ -415,7 +547,6 @@ class Cockpit:
     # --- safety calls, the same as the safety centre's buttons ----------------------------------------------
 
     def alert(self, alert: Alert) -> Feedback:
-        """Alerts the driver."""
         return self._perform(WarnDriver(alert))
 
     def hazards(self, on: bool) -> Feedback:
@@ -423,7 +554,6 @@ class Cockpit:
         return self.command(LIGHTS.HAZARD, on)
 
     def emergency_call(self) -> Feedback:
-        """Calls the emergency services."""
         return self._perform(CALL_EMERGENCY)
 
     def ask_driver(self, text: str) -> Feedback:
@@ -478,7 +608,6 @@ class Cockpit:
 
     @property
     def size(self) -> ScreenSize:
-        """Size of its display."""
         return self._state.size
 
     @property

@@ -96,10 +96,7 @@ class Canvas:
         A text that would be very small is first wrapped to as many lines as the box has room for.
 
         Args:
-            box: the box that it may fill.
-            text: the text.
             style: a style of the type scale; smaller ones are used as needed.
-            colour: colour of the letters.
             align: ``left``, ``centre`` or ``right``.
             lines: maximum number of lines.
             keeps_end: whether it loses its beginning where it is too long.
@@ -178,9 +175,6 @@ def fit(
     """The largest style in which the text fits, its lines, and whether it had to be cut.
 
     Args:
-        text: the text.
-        style: the largest style.
-        width: width of the box.
         lines: maximum number of lines, as long as the text fits on them in some style.
         height: height of the box; more lines are used before the smallest style if it has room for them.
         keeps_end: whether it loses its beginning where it has to be cut.

@@ -18,7 +18,6 @@ def cabin_c(vehicle: Vehicle, minutes: float, *, climate: bool) -> float:
 
     Args:
         vehicle: as it is left, with its windows and who else is aboard.
-        minutes: how long after.
         climate: whether the climate control goes on by itself, at the temperature that is set.
     """
     now = vehicle.signals

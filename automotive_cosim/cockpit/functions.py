@@ -21,13 +21,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from dataclasses import fields as dataclass_fields
 from functools import cache, lru_cache, partial
+from math import isfinite
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Le, MultipleOf
 
 from automotive_cosim.cockpit import signals as catalogue
 from automotive_cosim.cockpit.commands import Set
-from automotive_cosim.cockpit.numbers import number_in, whole_in
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import LeafKind, Signal
 from automotive_cosim.cockpit.state import Message, State
@@ -38,6 +38,34 @@ from automotive_cosim.errors import ActionError, UnknownNameError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.blank import is_blank
 from automotive_cosim.formats.words import shown
+
+LONGEST_NUMBER = 40
+"""Characters of a number's text; longer ones are no numbers."""
+
+
+def number_in(value: Any, most: float) -> float | None:
+    """A number from an int, a float or its text; None if it is none.
+
+    Args:
+        most: what is farther from zero becomes this: a float may not hold it.
+    """
+    if isinstance(value, str):
+        try:
+            value = float(value) if len(value) <= LONGEST_NUMBER else None
+        except ValueError:
+            return None
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    if isinstance(value, float) and not isfinite(value):
+        return None
+    return float(min(max(value, -most), most))
+
+
+def whole_in(value: Any, most: float) -> int | None:
+    """The same of a whole number, also from a float that holds one."""
+    number = number_in(value, most)
+    return int(number) if number is not None and number.is_integer() else None
+
 
 CallMade = Message | Feedback
 """What a call becomes: the message to perform or, of a reading or a refusal, the answer itself."""

@@ -60,7 +60,6 @@ class Rect(NamedTuple):
         return Rect(self.x, self.y, width, self.height)
 
     def right_part(self, width: int) -> Rect:
-        """Its rightmost part."""
         return Rect(self.right - width, self.y, width, self.height)
 
     def top(self, height: int) -> Rect:
@@ -68,7 +67,6 @@ class Rect(NamedTuple):
         return Rect(self.x, self.y, self.width, height)
 
     def bottom_part(self, height: int) -> Rect:
-        """Its lowest part."""
         return Rect(self.x, self.bottom - height, self.width, height)
 
     def below(self, height: int) -> Rect:

@@ -42,10 +42,8 @@ class GroundMap:
         """Draws what is in sight, in the order in which the areas came.
 
         Args:
-            brush: draws on the picture.
             view: from metres to its pixels.
             size: width and height of the picture.
-            colours: of the kinds to draw.
             pixel: pixels of the picture per pixel that is seen, if it is made smaller afterwards.
         """
         found = self._tree.query(view.bounds(*size))

@@ -90,7 +90,6 @@ class RoadMap:
         return tuple(sorted({road.name for road in self.roads if road.name}))
 
     def find(self, edge_id: str) -> Road | None:
-        """The road of that edge."""
         at = self._index.get(edge_id)
         return None if at is None else self.roads[at]
 
@@ -121,7 +120,6 @@ class RoadMap:
 
         Args:
             area: the map's area on the screen.
-            camera: the map's camera.
             avoid: boxes that must stay free.
         """
         view = View(camera, 1 / camera.metres_per_pixel, area.width / 2, area.height * camera.down)

@@ -98,14 +98,11 @@ def _sheet(
     """The roads and routes on one sheet.
 
     Args:
-        roads: the network.
-        heading_deg: upward heading.
         metres_per_pixel: metres per logical pixel.
         place: column and row of the sheet, and pixels from one to the next.
         size: size of the sheet in pixels.
         scale: pixels per logical pixel.
         route: edges of the route ahead.
-        alternatives: edges of alternative routes.
         slow: edges and the relative speed of their traffic.
         night: whether to use the night palette.
     """
@@ -156,7 +153,6 @@ class _Pen:
     """Fine pixels per logical pixel."""
 
     def width(self, stroke: Stroke) -> float:
-        """Width of a road."""
         return max(LEAST_WIDTH[stroke.rank] * _FINE, stroke.road.lane_count * LANE_M * self.per_metre)
 
     def way(self, strokes: list[Stroke], colour: Colour) -> None:

@@ -173,7 +173,6 @@ def breath(signals: Signals, without: Seat | None = None) -> float:
     Body size and metabolism, Hilgardia 6, 1932).
 
     Args:
-        signals: of the car.
         without: a seat that is left out, as the driver's once the driver has gone.
     """
     bodies = (one for one in seated(signals) if one.kind is not Kind.OBJECT and one.seat is not without)

@@ -106,7 +106,6 @@ class Destination:
 
     @property
     def icon(self) -> Icon:
-        """Icon of its kind."""
         return SORTS[self.kind].icon
 
     def away_m(self, x_m: float, y_m: float) -> float:
@@ -122,7 +121,6 @@ class Gazetteer(AppData):
     streets: tuple[str, ...]
 
     def names(self, state: State) -> Mapping[str, tuple[str, ...]]:
-        """The places."""
         return {"places": tuple(place.name for place in self.places)}
 
     def named(self, destination: str) -> str:
@@ -131,7 +129,6 @@ class Gazetteer(AppData):
         return destination if place is None else place.name
 
     def find(self, name: str) -> Destination | None:
-        """The place of that name."""
         return next((place for place in self.places if place.name == name), None)
 
     def at(self, edge_id: str) -> Destination | None:
@@ -139,7 +136,6 @@ class Gazetteer(AppData):
         return next((place for place in self.places if place.edge_id == edge_id), None)
 
     def of(self, kind: PlaceKind) -> tuple[Destination, ...]:
-        """All places of one kind."""
         return tuple(place for place in self.places if place.kind is kind)
 
     @property

@@ -521,7 +521,6 @@ class Signals:
         self._values = {path: signal.default for path, signal in CATALOGUE.items()}
 
     def copy(self) -> Signals:
-        """An independent copy."""
         twin = Signals.__new__(Signals)
         twin._values = self._values.copy()
         return twin

@@ -51,7 +51,6 @@ class ScreenSize(StrEnum):
 
     @property
     def whole(self) -> Rect:
-        """The display."""
         return Rect(0, 0, self.width, self.height)
 
     @property
@@ -61,12 +60,10 @@ class ScreenSize(StrEnum):
 
     @property
     def status(self) -> Rect:
-        """The status bar."""
         return self.whole.top(self.bars * STATUS_HEIGHT)
 
     @property
     def dock(self) -> Rect:
-        """The dock."""
         return self.whole.bottom_part(self.bars * DOCK_HEIGHT)
 
     @property

@@ -36,8 +36,6 @@ def feel(signals: Signals, surroundings: Surroundings, measures_grip: bool = Fal
     """Writes the sensors' readings of the surroundings.
 
     Args:
-        signals: written to.
-        surroundings: what there is.
         measures_grip: whether the car measures the road's grip, and does not also infer it from the weather.
     """
     driving, weather = surroundings.driving, surroundings.weather

@@ -52,7 +52,6 @@ class AppData:
     """Whether a change commands nothing by itself but is used by a later command, as a draft is."""
 
     def commands(self) -> Mapping[str, Any]:
-        """What of it was commanded, as app data."""
         return {}
 
     def parts(self) -> Mapping[str, str]:
@@ -98,7 +97,6 @@ class Message(ABC):
 
     @property
     def command(self) -> Command | None:
-        """The command in it."""
         return None
 
     @abstractmethod
@@ -113,7 +111,6 @@ class Command(Message):
 
     @property
     def command(self) -> Command | None:
-        """Itself."""
         return self
 
     @property
@@ -240,7 +237,6 @@ class State:
     """What was commanded, in order."""
 
     def copy(self) -> State:
-        """An independent copy."""
         return replace(self, vehicle=self.vehicle.copy())
 
     def of(self, kind: type[D]) -> D:
@@ -286,7 +282,6 @@ class State:
 
     @property
     def restrictions(self) -> Restriction:
-        """The present restrictions."""
         return restrictions(self.signals[MOTION.GEAR], self.signals[MOTION.SPEED])
 
     @property

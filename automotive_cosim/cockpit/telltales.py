@@ -80,11 +80,9 @@ class _SymbolPen:
         self._draw.line(self._at(points), fill, round(width * self._unit), joint="curve")
 
     def area(self, *points: tuple[float, float], fill: Colour | int = 255) -> None:
-        """A filled polygon."""
         self._draw.polygon(self._at(points), fill)
 
     def disc(self, x: float, y: float, radius: float, fill: Colour | int = 255) -> None:
-        """A filled circle."""
         self._draw.ellipse(self._box(x - radius, y - radius, x + radius, y + radius), fill)
 
     def arc(self, left: float, top: float, right: float, bottom: float, begin: float, end: float) -> None:

@@ -101,7 +101,6 @@ class Vehicle:
     """What it was not fitted with, or is out of order."""
 
     def copy(self) -> Vehicle:
-        """An independent copy."""
         return Vehicle(self.signals.copy(), self.dark, self.before_mode, self.lacks)
 
     def command(self, signal: Signal[T], value: T) -> str:

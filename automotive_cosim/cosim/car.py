@@ -2,23 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.signals import CALL
+from automotive_cosim.cockpit.notices import NOTICED
+from automotive_cosim.cockpit.occupants import SIGNALS, seated
+from automotive_cosim.cockpit.signals import BODY, CALL, GLASS, HVAC, LIGHTS, Signals
 from automotive_cosim.contracts import DrivingState, Limit, RouteOption
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.cosim.moment import Moment, around
-from automotive_cosim.cosim.occupant_acts import handled
 from automotive_cosim.geo.connectivity import OFFLINE, Modem
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.signs import LocalSigns
 from automotive_cosim.scenarios import WeatherAt, weather_at
 from automotive_cosim.traffic.base import Event, Traffic
-from automotive_cosim.traffic.ego import PARKS, SETS_OFF
+from automotive_cosim.traffic.ego import BUCKLES, CLEARS_VIEW, PARKS, SETS_OFF, WAKES_UP
+
+SEEN = NOTICED / 4
+"""Share of the glass that is wet or fogged from which a driver who is told of it does something about it."""
+
+
+def handled(reaction: str, signals: Signals) -> Iterator[CarChange]:
+    """What is turned, opened or shut now.
+
+    Args:
+        reaction: kind of the driver's reaction on the road (``traffic.base.Event``).
+    """
+    if reaction == WAKES_UP and signals[CALL.PHONE] == "HAND":
+        yield CarChange(0.0, CALL.PHONE.path, "AWAY")
+    elif reaction == CLEARS_VIEW:
+        if signals[BODY.FRONT_WIPER] == "OFF" and signals[GLASS.WINDSHIELD_FILM] >= SEEN:
+            yield CarChange(0.0, BODY.FRONT_WIPER.path, "RAIN_SENSOR")
+        if signals[GLASS.WINDSHIELD_FOG] >= SEEN:
+            yield CarChange(0.0, HVAC.FRONT_DEFROSTER.path, True)
+        if signals[LIGHTS.SWITCH] == "OFF":
+            yield CarChange(0.0, LIGHTS.SWITCH.path, "AUTO")
+    elif reaction == BUCKLES:
+        for one in seated(signals):
+            if not one.belted:
+                yield CarChange(0.0, SIGNALS[one.seat].belted.path, True)
+
 
 ALTERNATIVES_FROM_S = 10.0
 ALTERNATIVES_EVERY_S = 60.0
@@ -61,8 +88,6 @@ class Car:
         keeps its own: what is posted for certain hours goes by that.
 
         Args:
-            departed: its cockpit at its departure.
-            now: its present moment.
             with_air: whether air, glass, seats and tyres are put back too.
 
         Returns:
@@ -167,7 +192,6 @@ def with_cause(errands: Iterable[Errand], since_s: float, now_s: float, ringing:
     Args:
         errands: all of them, by simulation time.
         since_s: the previous instant.
-        now_s: the present one.
         ringing: who calls now; empty if nobody does.
     """
 

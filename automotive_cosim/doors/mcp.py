@@ -83,7 +83,7 @@ on what is nested too deep."""
 EpisodeId = Annotated[str, Field(description="The id that `start` returned.")]
 
 
-class CockpitServer(MCPServer[Any]):
+class _CockpitServer(MCPServer[Any]):
     """A server that refuses arguments which a tool does not have, in place of leaving them out."""
 
     async def list_tools(self) -> list[Tool]:
@@ -121,7 +121,7 @@ def make_server(
         scenarios: folder of the scenarios that ``start`` takes beside the shipped ones.
     """
     told = INSTRUCTIONS if interface.touches else CALLING
-    server = CockpitServer("automotive-cosim", instructions=told, version=__version__, log_level="WARNING")
+    server = _CockpitServer("automotive-cosim", instructions=told, version=__version__, log_level="WARNING")
     tools = CockpitTools(service, server, interface, scenarios)
     acting = (tools.act,) if interface.touches else ()
     for tool in (tools.list_tasks, tools.list_drives, tools.start, tools.observe, *acting, tools.finish):

@@ -31,14 +31,8 @@ class McpSettings:
 
     http: Annotated[tuple[str, int] | None, Option(form="HOST:PORT", read=read_address)] = None
     """Serve streamable HTTP at http://HOST:PORT/mcp, for whoever has the token, instead of standard input and
-    output."""
-    token: Annotated[str, Option(default="a new one each time", variable="AUTOMOTIVE_COSIM_MCP_TOKEN")] = ""
-    """What requests over HTTP have to give, in the address or as a bearer token."""
-    episodes: Annotated[int, Ge(1), Le(1000)] = 16
-    """Maximum number of concurrent episodes."""
-    idle_s: Annotated[float, Ge(1), Le(1e6), Option("idle-s", form="SECONDS")] = 900.0
-    """Seconds after which an idle episode is closed."""
-    scenarios: Annotated[Path | None, Option(form="FOLDER", variable="AUTOMOTIVE_COSIM_SCENARIOS")] = None
+    output. AUTOMOTIVE_COSIM_MCP_TOKEN is the token; without it, each start draws one."""
+    scenarios: Annotated[Path | None, Option(form="FOLDER")] = None
     """A folder of scenarios of your own, which assistants may name beside the shipped ones."""
     interface: Annotated[Interface, OneOf(Interface, "interface"), Option(form="|".join(Interface))] = (
         Interface.TOUCH

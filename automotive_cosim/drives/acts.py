@@ -21,7 +21,6 @@ def acts_of(given: Sequence[CommandRecord], driving: DrivingState) -> Iterator[D
     refused.
 
     Args:
-        given: the commands.
         driving: how the car drove when they were given.
     """
     for record in given:

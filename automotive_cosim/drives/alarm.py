@@ -14,7 +14,6 @@ def noticed(drive: Drive, changed: Sequence[str] = (), wakes: Sequence[Wake] = W
     Args:
         drive: the moments so far.
         changed: names of what has changed since the last look; of those that are no longer there, that they ended.
-        wakes: what is read.
     """
     lines = []
     for wake in wakes:

@@ -309,9 +309,7 @@ def _ahead(
     """What the map or the traffic service reports on the route.
 
     Args:
-        name: of the reading.
         away_m: how far it is; 0 within it, None without it.
-        about: what it is.
         more: what else there is to read, within it or ahead of it.
     """
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import datetime
+from datetime import datetime, timedelta
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.simulation import CoSimulation, couple
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.errors import NoRoomError
+from automotive_cosim.errors import NoRoomError, UserError
+from automotive_cosim.formats.scenario import weather_since
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
@@ -23,14 +24,19 @@ SETTLES_S = 60.0
 """Over how long the road takes on the grip of other weather: our choice; snow and rain need minutes to cover it."""
 
 
-def depart(script: DriveScript, simulations: Simulations, observer: Observer | None = None) -> CoSimulation:
+def depart(
+    script: DriveScript,
+    simulations: Simulations,
+    observer: Observer | None = None,
+    traffic: Traffic | None = None,
+) -> CoSimulation:
     """The drive at its first instant; whoever takes it over must close it. If the first trip's road is so full that
     the car finds no gap, the drive begins with the next of its trips.
 
     Args:
-        script: the drive.
         simulations: warm traffic, shared with others.
         observer: notified of progress.
+        traffic: a drive by the script that has departed; None lets one depart.
 
     Raises:
         UnknownNameError: no such scenario, trip or driver.
@@ -42,14 +48,15 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
     observer = observer or Observer()
     scenario = scenario_of(script)
     draws = Draws(script.family, script.seed)
-    ego = _ego_plan(script, scenario, draws)
+    ego = ego_plan(script, scenario)
     observer.loading(scenario)
 
     def warming(done_s: float, total_s: float) -> None:
         observer.warming(scenario.title, done_s, total_s)
 
-    with simulations.held(scenario, script.seed % SEED_LIMIT, warming) as simulation:
-        ego, traffic = departed_on_a_free_road(simulation, ego)
+    if traffic is None:
+        with simulations.held(scenario, script.seed % SEED_LIMIT, warming) as simulation:
+            ego, traffic = departed_on_a_free_road(simulation, ego)
     try:
         cockpit = Cockpit(
             traffic.network,
@@ -114,7 +121,32 @@ def scenario_of(script: DriveScript) -> Scenario:
     return replace(scenario, sumo=sumo)
 
 
-def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:
+def beside(script: DriveScript, first: DriveScript, later_s: float) -> DriveScript:
+    """The script of a car that departs so many seconds after another in the same traffic: roads, hour and weather
+    are the other's.
+
+    Raises:
+        UserError: it is a drive on other roads.
+    """
+    if script.scenario != first.scenario:
+        raise UserError(
+            f"the cars of a fleet share a road, but drive {script.seed} of {script.family} is on "
+            f"{script.scenario!r} and not on {first.scenario!r}; choose one place with scenario="
+        )
+    start = datetime.fromisoformat(first.start) + timedelta(seconds=later_s)
+    return replace(
+        script,
+        start=start.isoformat(),
+        weather=weather_since(first.weather, later_s),
+        origin=first.origin,
+        density=first.density,
+        coarse=first.coarse,
+    )
+
+
+def ego_plan(script: DriveScript, scenario: Scenario) -> EgoPlan:
+    """How the car of a script drives."""
+    draws = Draws(script.family, script.seed)
     first, *others = (scenario.trip(name) for name in script.trips)
     return EgoPlan(
         first,

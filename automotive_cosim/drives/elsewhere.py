@@ -19,7 +19,6 @@ def elsewhere(script: DriveScript, place: str) -> DriveScript:
     one after another and over again.
 
     Args:
-        script: a drive of a family.
         place: a shipped scenario, or the path of a scenario's folder, a ``.sumocfg`` or a ``.net.xml``.
 
     Raises:

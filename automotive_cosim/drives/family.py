@@ -85,7 +85,6 @@ class Family:
     """Who is in the car besides the driver; None draws them."""
 
     def draw(self, seed: int) -> DriveScript:
-        """The drive of a seed."""
         rng = Draws(self.id, seed).rng(Purpose.DRIVE)
         kinds = [kind for kind in self.cast if kind in STAGINGS and kind not in ONCE]
         drawn = rng.permutation(len(kinds))[: int(rng.integers(FEWEST, MOST))]
@@ -154,7 +153,6 @@ def _times_s(
     Args:
         takes_s: by how much longer than others each staging takes before the next one.
         comes_s: how long each takes until it obliges.
-        rng: draws them.
     """
     quiet_before = int(rng.integers(1, len(takes_s)))
     length_s = QUIET_S + float(round(rng.uniform(0, 60)))

@@ -39,7 +39,6 @@ class Fault:
 
     @property
     def line(self) -> str:
-        """All in a line."""
         return f"{clock(self.time_s)} {self.what}: {self.about}" + (f" ({self.why})" if self.why else "")
 
 
@@ -48,7 +47,6 @@ def faults(events: Iterable[JudgedEvent], acts: Iterable[JudgedAct]) -> list[Fau
 
     Args:
         events: its events, with times since departure.
-        acts: its acts, likewise.
     """
     events, acts = tuple(events), tuple(acts)
     found = [_of_event(event, acts) for event in events if _is_lost(event)]

@@ -373,7 +373,6 @@ class _Bench:
     """The speed that it advised."""
 
     def act(self, act: DriveAct) -> JudgedAct:
-        """What an act was."""
         judged = self._judged(act)
         if judged.worth.is_nuisance:
             judged = replace(judged, cost=max(NUISANCE, judged.cost))

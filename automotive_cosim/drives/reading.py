@@ -76,7 +76,6 @@ class Gathered:
 
     @property
     def speed_kmh(self) -> float:
-        """Speed of the car."""
         return self.vehicle.speed_kmh
 
     @property

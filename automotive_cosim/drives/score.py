@@ -82,7 +82,6 @@ class Score:
 
     @property
     def nuisances_per_h(self) -> float:
-        """Nuisances per driving hour."""
         return _per_h(self.nuisances, self.driven_s)
 
     @property

@@ -27,7 +27,7 @@ from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ordered
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.session import Baseline, JudgedSession, beginning
+from automotive_cosim.episode.session import Baseline, JudgedSession, TakesTime, beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.interface.observe import Channel
 
@@ -91,6 +91,8 @@ class DriveSession(JudgedSession):
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
+    judged: bool = True
+    """Whether it is compared with drives with nobody at the cockpit, and judged; each of those is a simulation."""
     _against: Against | None = None
     _given: int = 0
     _asked: int = 0
@@ -104,20 +106,22 @@ class DriveSession(JudgedSession):
         world: CoSimulation,
         setup: SessionSetup,
         observer: Observer | None = None,
+        *,
+        judged: bool = True,
     ) -> Self:
         """The session that begins at the present moment of a drive, and takes it over.
 
         Args:
-            world: the running drive.
             setup: the agent's input, and the duration as ``max_sim_s``.
             observer: notified of every second that passes.
+            judged: whether it is judged at its end.
 
         Raises:
             TrafficError: the traffic simulation failed.
         """
         words = ordered(setup.conditions.order, setup.conditions.language, with_errands=bool(world.car.errands))
         begun: dict[str, Any] = beginning(world, words, setup, (), observer)
-        session = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm())
+        session = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm(), judged=judged)
         session._note(world.moment)
         session._read()
         return session
@@ -142,16 +146,16 @@ class DriveSession(JudgedSession):
         """The harm on this drive, and on the do-nothing drive of the same length."""
         return harm(self.moments), harm(self.baseline_moments)
 
-    def think(self, seconds: float) -> None:
+    def thinking(self, seconds: float) -> TakesTime[None]:
         """As in a session, at most to the end of the drive."""
-        super().think(min(seconds, max(0.0, self._left_s())))
+        return super().thinking(min(seconds, max(0.0, self._left_s())))
 
-    def step(self, action: Action) -> None:
+    def stepping(self, action: Action) -> TakesTime[None]:
         """As in a session; a spoken answer is noted, and a declared status ends nothing."""
         said = spoken(action, self.world.moment.time_s)
         if said is not None:
             self.acts.append(said)
-        super().step(action)
+        yield from super().stepping(action)
 
     def close(self) -> None:
         """Ends the drive and all its copies; may be called again."""
@@ -165,14 +169,14 @@ class DriveSession(JudgedSession):
 
     @property
     def _copies(self) -> Sequence[Baseline]:
-        return (self.baseline, *(twin.copy for twin in self.twins))
+        return (self.baseline, *(twin.copy for twin in self.twins)) if self.judged else ()
 
-    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Feedback:
+    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> TakesTime[Feedback]:
         """Lets an action's time pass: a wait lasts until something wakes."""
         if why := self._note_acts():
             feedback = self.world.cockpit.spoken(Feedback(FeedbackCode.REFUSED, why))
         if action is None or action.action_type is not ActionType.WAIT:
-            feedback = super()._spend(action, feedback, cost_s)
+            feedback = yield from super()._spend(action, feedback, cost_s)
             goes_on = action is not None and action.action_type is ActionType.STATUS
             return self._told(
                 feedback.code, "the watch goes on; wait for what changes" if goes_on else feedback.text
@@ -181,7 +185,7 @@ class DriveSession(JudgedSession):
         begun_s, longest_s = self.world.moment.time_s, float(action.seconds or LONGEST_S)
         left_s = min(longest_s, self._left_s())
         while left_s > ROUNDING_S and not self._is_woken and self.world.moment.driving.end is None:
-            self._advance(min(TICK_S, left_s))
+            yield from self._advance(min(TICK_S, left_s))
             left_s = min(longest_s - (self.world.moment.time_s - begun_s), self._left_s())
         passed_s = self.world.moment.time_s - begun_s
         return self._told(FeedbackCode.OK, f"{passed_s:.0f} s passed")
@@ -193,7 +197,8 @@ class DriveSession(JudgedSession):
         """What people aboard have asked for since the last observation, and thanks for what is done."""
         asked, language = self.moments[-1].asked, self.setup.conditions.language
         new, self._asked = asked[self._asked :], len(asked)
-        done = [each for each in asked if each.at_s in carried_out(self.moments) - self._thanked]
+        carried = carried_out(self.moments) - self._thanked if asked else frozenset[float]()
+        done = [each for each in asked if each.at_s in carried]
         self._thanked |= {each.at_s for each in done}
         return (*(said(each, language) for each in new), *(thanks(each, language) for each in done))
 
@@ -204,8 +209,8 @@ class DriveSession(JudgedSession):
 
     def _proceed(
         self, action: Action | None, feedback: Feedback, cost_s: float = 0.0, said: tuple[str, ...] = ()
-    ) -> None:
-        super()._proceed(action, feedback, cost_s, said)
+    ) -> TakesTime[None]:
+        yield from super()._proceed(action, feedback, cost_s, said)
         self._read()
 
     def _read(self) -> None:
@@ -237,6 +242,8 @@ class DriveSession(JudgedSession):
         for moment in moments:
             self.moments.append(moment)
             self._note(moment)
+        if not self.judged:  # nobody looks back further
+            del self.moments[1 : -max(READ_BACK, IN_FORCE_S)]
         self._follow()
 
     def _note(self, moment: Moment) -> None:
@@ -245,7 +252,7 @@ class DriveSession(JudgedSession):
         names = tuple(change.name for change in changes if change.wakes)
         if names:
             self.woken.append((moment.time_s, names))
-        for event in self.tracker.see(self.moments):
+        for event in self.tracker.see(self.moments) if self.judged else ():
             if not event.lookalike and event.obliged_s is None and not KINDS[event.kind].by_state:
                 index = len(self.tracker.events) - 1 - self.tracker.events[::-1].index(event)
                 tracker = Tracker({event.kind: KINDS[event.kind]})
@@ -290,15 +297,16 @@ class DriveSession(JudgedSession):
             end = End.MINUTES_OVER if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
         return End.MINUTES_OVER if end is End.OUT_OF_TIME else end
 
-    def _finish(self, end: End) -> None:
+    def _finish(self, end: End) -> TakesTime[None]:
         """An agent that stops acting leaves the rest of the drive to itself."""
         if end not in (End.DRIVE_ENDED, End.MINUTES_OVER) and self.setup.max_sim_s is not None:
             self.unwatched_from_s = round(self.seconds, 1)
-            self._advance(max(0.0, self._left_s()))
+            yield from self._advance(max(0.0, self._left_s()))
         for twin in self.twins:
             self.due_anyway[twin.index] = twin.due_s
-        self.judgement = self._judged(self.untouched)
-        super()._finish(end)
+        if self.judged:
+            self.judgement = self._judged(self.untouched)
+        yield from super()._finish(end)
 
     def _judged(self, untouched: Sequence[DriveEvent] = ()) -> Judgement:
         if self._against is None:

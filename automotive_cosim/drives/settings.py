@@ -77,7 +77,6 @@ class DriveSettings:
         return ", ".join(f"{name} {_told(value)}" for name, value in self._set())
 
     def applied(self, script: DriveScript) -> DriveScript:
-        """The script with these settings."""
         made = script
         if self.hour is not None:
             day = datetime.fromisoformat(script.start).replace(hour=0, minute=0, second=0)

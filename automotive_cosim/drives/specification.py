@@ -19,6 +19,7 @@ from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import EpisodeSpec, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import plain
+from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.fork import Simulations
 
 MOST_STEPS = 100_000
@@ -58,6 +59,7 @@ class DriveSpec:
         channels: frozenset[Channel] = ALL,
         observer: Observer | None = None,
         script: DriveScript | None = None,
+        traffic: Traffic | None = None,
         *,
         lean: bool = False,
     ) -> DriveSession:
@@ -68,6 +70,7 @@ class DriveSpec:
             channels: what the agent wants to see.
             observer: notified of progress.
             script: used instead of its own.
+            traffic: a drive by it that has departed, as beside other cars; None lets one depart.
             lean: lays out no screen (``SessionSetup.lean``).
 
         Raises:
@@ -78,7 +81,7 @@ class DriveSpec:
         if self.conditions.language is not Language.ENGLISH:
             drive = replace(drive, signals={HMI.LANGUAGE.path: str(self.conditions.language), **drive.signals})
         setup = SessionSetup(channels, self.conditions, self.max_steps, drive.duration_s, lean=lean)
-        world = depart(drive, simulations, observer)
+        world = depart(drive, simulations, observer, traffic)
         try:
             return DriveSession.depart_with(world, setup, observer)
         except BaseException:

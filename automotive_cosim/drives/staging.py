@@ -79,7 +79,6 @@ class Setting:
     """How far ahead of the car, or behind it, other vehicles and incidents are; None for what is usual."""
 
     def metres(self, usual_m: float) -> float:
-        """That distance."""
         return usual_m if self.ahead_m is None else self.ahead_m
 
 

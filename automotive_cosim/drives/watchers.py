@@ -189,7 +189,6 @@ class AlertOften:
         self.reset("")
 
     def reset(self, goal: str) -> None:
-        """Begins with an alert."""
         self._next_s = 0.0
 
     def act(self, observation: Observation) -> Action:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, Generic, TypeVar
 
@@ -12,7 +13,7 @@ import numpy.typing as npt
 from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action
 from automotive_cosim.envs.pool import POOL
-from automotive_cosim.episode.session import Session
+from automotive_cosim.episode.session import Session, TakesTime, driven
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.interface import spaces
@@ -24,6 +25,7 @@ ActT = TypeVar("ActT")
 
 
 StepResult = tuple[dict[str, Any], float, bool, bool, dict[str, Any]]
+Stepped = tuple[ObsT, float, bool, bool, dict[str, Any]]
 
 
 class SessionEnv(gym.Env[ObsT, ActT], Generic[ObsT, ActT, PlayedT]):
@@ -61,6 +63,20 @@ class SessionEnv(gym.Env[ObsT, ActT], Generic[ObsT, ActT, PlayedT]):
             raise gym.error.ResetNeeded("call reset() before anything else")
         return self._episode
 
+    def step(self, action: ActT) -> Stepped[ObsT]:
+        """Performs one action, lets its time pass, observes and, at the end, judges; see the class.
+
+        Raises:
+            ActionError: the action is malformed; nothing has happened.
+            ResetNeeded: the episode is over, or there has been none.
+            TrafficError: the traffic simulation failed.
+        """
+        return driven(self.stepping(action))
+
+    @abstractmethod
+    def stepping(self, action: ActT) -> TakesTime[Stepped[ObsT]]:
+        """As ``step``, tick by tick (``Session.stepping``)."""
+
     def render(self) -> npt.NDArray[np.uint8] | None:
         """The cockpit's screen, (height, width, 3), or None without a render mode."""
         return self.episode.screenshot() if self.render_mode else None
@@ -78,7 +94,6 @@ class SessionEnv(gym.Env[ObsT, ActT], Generic[ObsT, ActT, PlayedT]):
         return self.episode
 
     def _end(self) -> None:
-        """Ends the session, if there is one."""
         episode, self._episode = self._episode, None
         if episode is not None:
             episode.close()

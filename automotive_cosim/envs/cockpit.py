@@ -12,6 +12,7 @@ from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended,
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import ACTION_COST_S, EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import UserError
@@ -116,16 +117,9 @@ class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
         self._episode = Episode.take_over(hand_over, self._setup, self._observer)
         return self._encoded(), self._info()
 
-    def step(self, action: Action | Mapping[str, Any] | str) -> StepResult:
-        """Performs one action, lets its time pass, observes and, at the end, judges.
-
-        Raises:
-            ActionError: the action is malformed; nothing has happened.
-            ResetNeeded: the episode is over, or there has been none.
-            TrafficError: the traffic simulation failed.
-        """
+    def stepping(self, action: Action | Mapping[str, Any] | str) -> TakesTime[StepResult]:
         episode = self._running()
-        episode.step(action_of(action))
+        yield from episode.stepping(action_of(action))
         return self._encoded(), *outcome(episode), self._info()
 
     def _encoded(self) -> dict[str, Any]:

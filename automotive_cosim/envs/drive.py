@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -9,22 +10,76 @@ from typing import Any
 from automotive_cosim.contracts import Action
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.result import figures
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import MOST_STEPS, DriveSpec
-from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of, spaces_of
+from automotive_cosim.envs.base import ActT, ObsT, SessionEnv, StepResult, action_of, ended, info_of, spaces_of
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.observer import Observer
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.formats.checked import Steps, checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.tasking.draws import SEED_LIMIT
+from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.fork import Simulations
 
 
-class DriveEnv(SessionEnv[dict[str, Any], Any, DriveSession]):
+class DrivesEnv(SessionEnv[ObsT, ActT, DriveSession]):
+    """An environment of one drive after another, on a road of its own or beside other cars."""
+
+    def __init__(
+        self,
+        simulations: Simulations | None,
+        render_mode: str | None,
+        channels: frozenset[Channel],
+        observer: Observer | None = None,
+        *,
+        lean: bool = False,
+    ) -> None:
+        """Begins without a drive; ``channels`` and ``lean`` are those of ``SessionSetup``."""
+        super().__init__(simulations, render_mode)
+        self._given_channels, self._observer, self._lean = channels, observer, lean
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[ObsT, dict[str, Any]]:
+        """Departs on a drive: that of the seed; without a seed on another one.
+
+        Raises:
+            ScenarioError: the scenario cannot be read, or a drive cannot take place in it.
+            InfrastructureError: no gap opened for the car, or the traffic simulation failed.
+        """
+        return self.depart(self.draw(seed))
+
+    def draw(self, seed: int | None) -> DriveSpec:
+        """The drive that ``reset`` with that seed departs on, and the end of the one before."""
+        super().reset(seed=seed)
+        self._end()
+        return self._drawn(int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed)
+
+    def depart(
+        self, spec: DriveSpec, script: DriveScript | None = None, traffic: Traffic | None = None
+    ) -> tuple[ObsT, dict[str, Any]]:
+        """Departs on a drive that was drawn; script and traffic are those of ``DriveSpec.begin``."""
+        self._episode = spec.begin(
+            self._simulations, self._given_channels, self._observer, script, traffic, lean=self._lean
+        )
+        return self._departed()
+
+    @abstractmethod
+    def _drawn(self, seed: int) -> DriveSpec:
+        """The drive of a seed."""
+
+    @abstractmethod
+    def _departed(self) -> tuple[ObsT, dict[str, Any]]:
+        """The first observation of a drive, and its info."""
+
+
+class DriveEnv(DrivesEnv[dict[str, Any], Any]):
     """A drive of ten to thirty minutes, on which something may require an act.
 
     Spaces are those of ``CockpitEnv``; the readings that the car notes are in ``vehicle`` (``noticed``). A ``wait``
@@ -79,36 +134,19 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, DriveSession]):
             max_steps=max_steps,
         )
         self._setup = SessionSetup(frozenset(map(Channel, channels)), under)
-        self._observer = observer
-        super().__init__(simulations, render_mode)
+        super().__init__(simulations, render_mode, self._setup.channels, observer)
         self.observation_space, self.action_space = spaces_of(self._setup)
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Departs on a drive.
+    def _drawn(self, seed: int) -> DriveSpec:
+        self._spec = replace(self._spec, seed=seed)
+        return self._spec
 
-        Raises:
-            ScenarioError: the scenario cannot be read, or a drive cannot take place in it.
-            InfrastructureError: no gap opened for the car, or the traffic simulation failed.
-        """
-        super().reset(seed=seed)
-        self._end()
-        drawn = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
-        self._spec = replace(self._spec, seed=drawn)
-        self._episode = self._spec.begin(self._simulations, self._setup.channels, self._observer)
+    def _departed(self) -> tuple[dict[str, Any], dict[str, Any]]:
         return self._encoded(), info_of(self.episode)
 
-    def step(self, action: Action | Mapping[str, Any] | str) -> StepResult:
-        """Performs one action, lets its time pass, observes and, at the end, judges.
-
-        Raises:
-            ActionError: the action is malformed; nothing has happened.
-            ResetNeeded: the drive is over, or there has been none.
-            TrafficError: the traffic simulation failed.
-        """
+    def stepping(self, action: Action | Mapping[str, Any] | str) -> TakesTime[StepResult]:
         session = self._running()
-        session.step(action_of(action))
+        yield from session.stepping(action_of(action))
         info, reward = info_of(session), 0.0
         if session.end is not None:
             result = figures(session)

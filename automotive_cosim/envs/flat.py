@@ -27,10 +27,11 @@ import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
 from automotive_cosim.contracts.ids import resource_id
-from automotive_cosim.envs.base import SessionEnv
+from automotive_cosim.envs.base import SessionEnv, Stepped
 from automotive_cosim.envs.cockpit import outcome, traffic_seed
 from automotive_cosim.envs.numbers import hashed, number_of
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import UserError
@@ -143,16 +144,10 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
         self._held = self._holds()
         return self._numbers(), {"action_mask": self.action_masks()}
 
-    def step(self, action: np.int64) -> tuple[npt.NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Performs one action of the table; ``info`` holds ``action_mask`` and, at the end, ``is_success``.
-
-        Raises:
-            ActionError: the action is not in the action space; nothing has happened.
-            ResetNeeded: the episode is over, or there has been none.
-            TrafficError: the traffic simulation failed.
-        """
+    def stepping(self, action: np.int64) -> TakesTime[Stepped[npt.NDArray[np.float32]]]:
+        """Performs one action of the table; ``info`` holds ``action_mask`` and, at the end, ``is_success``."""
         episode = self._running()
-        episode.step(self._action(number_of(action, self._count)))
+        yield from episode.stepping(self._action(number_of(action, self._count)))
         reward, terminated, truncated = outcome(episode)
         held = self._holds()
         reward += self._goal_bonus * (held - self._held)

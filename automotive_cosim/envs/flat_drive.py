@@ -37,14 +37,13 @@ from automotive_cosim.drives.changes import DUE_S, LONGEST_S, WAKES
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.reading import NO_LINE, Gathered, LawLine, Reader
 from automotive_cosim.drives.score import LEAST_WORTH, score
-from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
-from automotive_cosim.envs.base import SessionEnv, ended
-from automotive_cosim.envs.drive import settings_of
+from automotive_cosim.envs.base import Stepped, ended
+from automotive_cosim.envs.drive import DrivesEnv, settings_of
 from automotive_cosim.envs.numbers import hashed, number_of
+from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.traffic.fork import Simulations
 
 CHANNELS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
@@ -350,7 +349,7 @@ def _without_numbers(line: str) -> str:
     return re.sub(r"\d+(\.\d+)?", " ", line)
 
 
-class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
+class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
     """Drives of one or several families, one drawn at each reset.
 
     The reward of a step is what it changed in the utility of the drive (``drives.score``), as a share of what the
@@ -388,28 +387,17 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         if not names:
             raise UserError("a flat environment of drives requires at least one family")
         settings = settings_of(minutes=minutes, coarse=lean or None)
-        self._lean = lean
         self._specs = [DriveSpec(family_named(name).id, scenario=scenario, settings=settings) for name in names]
-        super().__init__(simulations, render_mode)
+        super().__init__(simulations, render_mode, CHANNELS, lean=lean)
         self.observation_space = gym.spaces.Box(-1.0, 1.0, (DriveNumbers.size,), np.float32)
         self.action_space = gym.spaces.Discrete(len(ACTIONS))
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
-        """Departs on a drive: that of the seed, of a family that it draws; without a seed on another one.
+    def _drawn(self, seed: int) -> DriveSpec:
+        return replace(self._specs[int(self.np_random.integers(len(self._specs)))], seed=seed)
 
-        Raises:
-            ScenarioError: a drive cannot take place in the scenario.
-            InfrastructureError: no gap opened for the car, or the traffic simulation failed.
-        """
-        super().reset(seed=seed)
-        self._end()
-        drawn = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
-        spec = replace(self._specs[int(self.np_random.integers(len(self._specs)))], seed=drawn)
-        self._episode = spec.begin(self._simulations, CHANNELS, lean=self._lean)
+    def _departed(self) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
         self._numbers, self._utility = DriveNumbers(), 0.0
-        return self._numbers.read(self._episode.observation), {}
+        return self._numbers.read(self.episode.observation), {}
 
     def number(self, action: Action) -> int | None:
         """The number of an action; the nearest of the two for a wait, None if this view has none for it."""
@@ -419,19 +407,13 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
             return ACTIONS.index(Action(ActionType.SHOW_ALERT, kind=action.kind))
         return None
 
-    def step(self, action: np.int64) -> tuple[npt.NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Performs one action of the table, and lets its time pass.
-
-        Raises:
-            ActionError: the action is not in the action space; nothing has happened.
-            ResetNeeded: the drive is over, or there has been none.
-            TrafficError: the traffic simulation failed.
-        """
+    def stepping(self, action: np.int64) -> TakesTime[Stepped[npt.NDArray[np.float32]]]:
+        """Performs one action of the table, and lets its time pass."""
         session = self._running()
         chosen = ACTIONS[number_of(action, len(ACTIONS))]
         if chosen.kind is not None:
             self._numbers.show(chosen.kind, session.observation.time_s)
-        session.step(chosen)
+        yield from session.stepping(chosen)
         found = score(session.judged_so_far(), session.seconds)
         before, self._utility = self._utility, found.utility / (2 * LEAST_WORTH)
         info: dict[str, Any] = {}

@@ -37,7 +37,6 @@ class ConcurrentVectorEnv(SyncVectorEnv):
         """Makes the environments.
 
         Args:
-            makers: make one each.
             autoreset_mode: as in gymnasium.
         """
         super().__init__([partial(_ahead, make) for make in makers], autoreset_mode=autoreset_mode)

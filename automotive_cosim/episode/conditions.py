@@ -233,7 +233,6 @@ class Condition:
         return self.name.removesuffix("_s")
 
     def of(self, conditions: Conditions) -> Any:
-        """Its value."""
         return getattr(conditions, self.name)
 
     def is_default(self, conditions: Conditions) -> bool:

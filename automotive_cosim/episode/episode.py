@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.session import Baseline, JudgedSession, beginning
+from automotive_cosim.episode.session import Baseline, JudgedSession, TakesTime, beginning
 from automotive_cosim.episode.situation import HandOver, SituationFinder
 from automotive_cosim.episode.specification import ROUNDING_S, End, EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
@@ -60,7 +60,6 @@ class Episode(JudgedSession):
         """Drives to the hand-over, and begins there.
 
         Args:
-            spec: what to run.
             simulations: warm traffic, shared with others.
             channels: what the agent wants to see, asked for at the hand-over.
             observer: notified of progress.
@@ -108,9 +107,9 @@ class Episode(JudgedSession):
             baseline=Baseline(world),
         )
 
-    def think(self, seconds: float) -> None:
+    def thinking(self, seconds: float) -> TakesTime[None]:
         """As in a session, but no longer than the task's deadline, after which it is too late anyway."""
-        super().think(min(seconds, self.instance.half.deadline.seconds))
+        return super().thinking(min(seconds, self.instance.half.deadline.seconds))
 
     def branch(self, max_steps: int | None = None) -> Episode:
         """An independent episode from this instant, which nobody watches: neither affects the other from here on.
@@ -200,7 +199,7 @@ class Episode(JudgedSession):
         self.unsaid = tuple(says for says in self.unsaid if says not in due)
         return tuple(says.text for says in due)
 
-    def _finish(self, end: End) -> None:
+    def _finish(self, end: End) -> TakesTime[None]:
         self.verdict = judge(
             self.instance,
             self.moments,
@@ -211,7 +210,7 @@ class Episode(JudgedSession):
             self.failure,
             self.said,
         )
-        super()._finish(end)
+        yield from super()._finish(end)
 
 
 def replayed(

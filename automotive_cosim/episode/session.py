@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from itertools import takewhile
 from math import inf
-from typing import Any, Protocol, Self, TypeVar
+from typing import Any, Protocol, Self, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -46,6 +46,20 @@ from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
+
+R = TypeVar("R")
+TakesTime: TypeAlias = Generator[float, None, R]
+"""Something that takes simulated time: yields each tick in seconds, and goes on once the road may run that far."""
+
+
+def driven(passing: TakesTime[R]) -> R:
+    """Lets it happen on a road of its own; its result."""
+    while True:
+        try:
+            next(passing)
+        except StopIteration as over:
+            result: R = over.value
+            return result
 
 
 @dataclass(kw_only=True)
@@ -114,10 +128,7 @@ class Session:
         Raises:
             TrafficError: the traffic simulation failed.
         """
-        self._check_open()
-        if seconds > 0:
-            self._advance(seconds)
-            self.thought_s += seconds
+        driven(self.thinking(seconds))
 
     def step(self, action: Action) -> None:
         """Performs one action, lets its time pass and observes.
@@ -125,9 +136,21 @@ class Session:
         Raises:
             TrafficError: the traffic simulation failed.
         """
+        driven(self.stepping(action))
+
+    def thinking(self, seconds: float) -> TakesTime[None]:
+        """As ``think``, tick by tick."""
+        self._check_open()
+        if seconds > 0:
+            yield from self._advance(seconds)
+            self.thought_s += seconds
+
+    def stepping(self, action: Action) -> TakesTime[None]:
+        """As ``step``, tick by tick. What is done at an instant is done when it yields the tick that passes next,
+        so several sessions can share a road (``episode.fleet``)."""
         self._check_open()
         if why := self._barred(action):
-            self.refuse(why)
+            yield from self.refusing(why)
             return
         feedback, cost_s = self._answer(action) or (self._performed(action), 0.0)
         said: tuple[str, ...] = ()
@@ -136,17 +159,21 @@ class Session:
             cost_s = spoken_s(action.text or "", *said)
         if action.action_type is ActionType.STATUS:
             self.declared, self.reason = action.goal_status, action.reason
-        self._proceed(action, feedback, cost_s, said)
+        yield from self._proceed(action, feedback, cost_s, said)
 
     def refuse(self, why: str) -> None:
         """Spends a step on an answer that could not be read as an action: only its time passes."""
+        driven(self.refusing(why))
+
+    def refusing(self, why: str) -> TakesTime[None]:
+        """As ``refuse``, tick by tick."""
         self._check_open()
-        self._proceed(None, Feedback(FeedbackCode.MALFORMED, why))
+        yield from self._proceed(None, Feedback(FeedbackCode.MALFORMED, why))
 
     def cut_off(self, end: End) -> None:
         """Ends it early, e.g. for an agent that has spent its budget."""
         self._check_open()
-        self._finish(end)
+        driven(self._finish(end))
 
     def give_up(self, why: str) -> None:
         """Ends it because the agent can act no more: no success, whatever has been done."""
@@ -255,9 +282,9 @@ class Session:
 
     def _proceed(
         self, action: Action | None, feedback: Feedback, cost_s: float = 0.0, said: tuple[str, ...] = ()
-    ) -> None:
+    ) -> TakesTime[None]:
         """Lets the action's time pass, plus ``cost_s``; the driver says ``said`` and what he has to say besides."""
-        feedback = self._spend(action, feedback, cost_s)
+        feedback = yield from self._spend(action, feedback, cost_s)
         said += self._remarks()
         self.heard += said
         begun_s = self.moments[0].time_s
@@ -278,20 +305,30 @@ class Session:
         self.thought_s = 0.0
         end = self._ended()
         if end is not None:
-            self._finish(end)
+            yield from self._finish(end)
 
-    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Feedback:
+    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> TakesTime[Feedback]:
         """Lets an action's time pass, and returns what the agent is told of its result."""
         waited_s = action.seconds if action and action.action_type is ActionType.WAIT else None
-        self._advance(self.setup.action_cost_s * (waited_s or 1) + cost_s)
+        yield from self._advance(self.setup.action_cost_s * (waited_s or 1) + cost_s)
         return feedback
 
     def _channels(self, action: Action | None) -> frozenset[Channel]:
         """The channels of the observation after an action."""
         return self.setup.given
 
-    def _advance(self, duration_s: float) -> None:
-        self.moments += self._heard(self.world.advance(duration_s))
+    def _advance(self, duration_s: float) -> TakesTime[None]:
+        """Advances tick by tick."""
+        left_s = duration_s
+        while left_s > ROUNDING_S and self.world.moment.driving.end is None:
+            tick_s = min(TICK_S, left_s)
+            yield tick_s
+            self._passed(self._heard(self.world.advance(tick_s)))
+            left_s -= tick_s
+
+    def _passed(self, moments: tuple[Moment, ...]) -> None:
+        """Takes note of what has just been driven."""
+        self.moments += moments
 
     def _ended(self) -> End | None:
         if self.world.moment.driving.end is not None:
@@ -303,8 +340,9 @@ class Session:
         most_s = self.setup.max_sim_s
         return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
 
-    def _finish(self, end: End) -> None:
+    def _finish(self, end: End) -> TakesTime[None]:
         self.end = end
+        yield from ()
 
     def _heard(self, moments: tuple[Moment, ...]) -> tuple[Moment, ...]:
         for moment in moments:
@@ -523,13 +561,15 @@ class JudgedSession(Session, ABC):
                 copy.part()
         return super()._performed(action)
 
-    def _advance(self, duration_s: float) -> None:
+    def _advance(self, duration_s: float) -> TakesTime[None]:
         """Advances second by second together with the copies: all simulations run at the same time."""
         left_s = duration_s
         while left_s > ROUNDING_S and self.world.moment.driving.end is None:
             tick_s = min(TICK_S, left_s)
             for copy in self._copies:
                 copy.prepare(tick_s)
+            yield tick_s
+            for copy in self._copies:
                 copy.start(self.world.moment.time_s + tick_s)
             passed = self._heard(self.world.advance(tick_s))
             for copy in self._copies:
@@ -537,7 +577,3 @@ class JudgedSession(Session, ABC):
                 copy.follow(self.world.moment.time_s)
             self._passed(passed)
             left_s -= tick_s
-
-    def _passed(self, moments: tuple[Moment, ...]) -> None:
-        """Takes note of what has just been driven."""
-        self.moments += moments

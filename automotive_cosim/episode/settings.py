@@ -41,7 +41,7 @@ class EpisodeSettings:
     half: str = "first"
     """Half of a pair: `first` or `second`."""
     scenario: str | None = None
-    """A scenario's name or folder, or any .sumocfg or .net.xml(.gz), instead of the task's own."""
+    """A scenario's name or folder, or any .sumocfg or .net.xml(.gz), instead of the task's or drive's own."""
     origin: Annotated[tuple[Longitude, Latitude] | None, Option(form="LON,LAT", read=read_origin)] = None
     """Move the centre of the network to this place, with its law, clock and climate; the task's own date, time and
     weather stay."""

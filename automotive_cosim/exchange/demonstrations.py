@@ -63,8 +63,6 @@ def drives(
     """What the rule-perfect watcher does on drives of families.
 
     Args:
-        families: ids of families.
-        seeds: which drives of each.
         minutes: when a drive is over, if its script ends later.
         simulations: warm simulations; by default those that the environments of this process share.
 
@@ -96,8 +94,6 @@ def tasks(
     """What the oracle does on tasks.
 
     Args:
-        names: ids of tasks.
-        seeds: which episodes of each.
         scenario: runs all tasks in this scenario instead of their own.
         simulations: warm simulations; by default those that the environments of this process share.
 

@@ -58,8 +58,6 @@ def import_openscenario(
     """Writes a scenario's folder.
 
     Args:
-        file: OpenSCENARIO XML.
-        out: the folder to create.
         network: a SUMO network in the file's coordinates, instead of the OpenDRIVE file that it names.
         ego: name of the entity that is the cockpit's car.
         country: ISO 3166-1 code, whose law holds; the format has no word for it.

@@ -2,35 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from contextlib import suppress
 from importlib.util import find_spec
 
-from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.errors import SetupError, UnknownNameError
 from automotive_cosim.exchange.openscenario import VERSIONS
 from automotive_cosim.exchange.osi import NEEDS as OSI
-from automotive_cosim.exchange.settings import ExportFormats
 from automotive_cosim.exchange.trajectories import NEEDS as PARQUET
 from automotive_cosim.traffic.sumo_programs import program
 
+OPENSCENARIO = {f"openscenario-{version}": version for version in VERSIONS}
+FORMATS = (*OPENSCENARIO, "opendrive", "osi", "ssam", "fcd", "csv", "parquet")
+"""The words for the formats in which a kept trial can be written."""
 
-def check_formats(formats: ExportFormats) -> None:
+
+def check_formats(formats: Collection[str]) -> None:
     """Checks that every format that is asked for can be written.
 
     Raises:
-        UserError: there is no such version.
+        UnknownNameError: there is no such format.
         SetupError: something is not installed; a line for each.
     """
-    if formats.openscenario and formats.openscenario not in VERSIONS:
-        raise UserError(f"OpenSCENARIO {formats.openscenario} cannot be written; give one of {', '.join(VERSIONS)}")
+    for name in formats:
+        if name not in FORMATS:
+            raise UnknownNameError("format", name, FORMATS)
     lacking: list[str] = []
-    if formats.opendrive:
+    if "opendrive" in formats:
         try:
             program("netconvert")
         except SetupError as error:
             lacking.append(f"OpenDRIVE: {error}")
-    if formats.osi and not (_is_there("osi_utilities") and _is_there("osi3")):
+    if "osi" in formats and not (_is_there("osi_utilities") and _is_there("osi3")):
         lacking.append(OSI)
-    if formats.parquet and not (_is_there("pandas") and _is_there("pyarrow")):
+    if "parquet" in formats and not (_is_there("pandas") and _is_there("pyarrow")):
         lacking.append(PARQUET)
     if lacking:
         raise SetupError(*lacking)

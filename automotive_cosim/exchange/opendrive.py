@@ -44,7 +44,6 @@ def write_opendrive(net: Path, target: Path) -> None:
 
     Args:
         net: a SUMO network, ``.net.xml`` or ``.net.xml.gz``.
-        target: the file.
 
     Raises:
         ScenarioError: netconvert refuses the network.

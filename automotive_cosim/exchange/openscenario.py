@@ -60,8 +60,6 @@ def write_openscenario(recording: Recording, target: Path, version: str = "1.3",
     """Writes a trial as OpenSCENARIO XML; the same record gives the same bytes.
 
     Args:
-        recording: the trial.
-        target: the file.
         version: of the standard, one of ``VERSIONS``.
         road: the road's OpenDRIVE file, beside the target; without it, the file names neither road nor lights.
 

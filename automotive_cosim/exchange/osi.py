@@ -81,7 +81,6 @@ def write_osi(recording: Recording, target: Path, road: Path | None = None) -> N
     """Writes a trial as a trace; the same record gives the same bytes.
 
     Args:
-        recording: the trial.
         target: the file, ``*_gt_*.osi`` or ``*.mcap``.
         road: the road's OpenDRIVE file, which the messages then name.
 

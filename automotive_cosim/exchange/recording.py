@@ -51,7 +51,7 @@ class Recording:
 
 
 def read_recording(folder: Path) -> Recording:
-    """Reads a folder of ``run`` or ``drive``, or a trial's in ``pictures/`` of an evaluation.
+    """Reads a folder of ``run``, or a trial's in ``pictures/`` of an evaluation.
 
     Raises:
         UserError: it has no recorded road, or cannot be read.

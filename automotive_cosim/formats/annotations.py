@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
 
 from annotated_types import Ge, Le
 
@@ -144,3 +144,23 @@ class Option:
 
 Longitude = Annotated[float, Ge(-180), Le(180), Called("a longitude from -180 (west) to 180 (east)")]
 Latitude = Annotated[float, Ge(-90), Le(90), Called("a latitude from -90 (south) to 90 (north)")]
+
+
+UNIT = "_s"
+"""The unit that the name of a field has, but not that of its option: the help says it."""
+PLAIN = Option()
+
+
+def option(kind: type, field: str) -> str:
+    """The option of a field, such as ``--warm-up`` of ``warm_up_s``."""
+    return f"--{option_name(field, get_type_hints(kind, include_extras=True)[field])}"
+
+
+def option_name(field: str, hint: Any) -> str:
+    """The same without the dashes, of a field with this annotation."""
+    return shown_as(hint).name or field.removesuffix(UNIT).replace("_", "-")
+
+
+def shown_as(hint: Any) -> Option:
+    """What an annotation says about the option."""
+    return next((each for each in getattr(hint, "__metadata__", ()) if isinstance(each, Option)), PLAIN)

@@ -14,7 +14,6 @@ def is_blank(value: object, choices: Collection[object] = ()) -> bool:
     moltis-org/moltis#283), or a list of such a text (anthropics/claude-code#95239).
 
     Args:
-        value: what came.
         choices: the argument's own words. One of them that is written in another way, as ``None`` for ``none``, is
             not blank: it may be meant.
     """

@@ -72,7 +72,7 @@ MAP = Cost(2**31, 64, 60, 20)
 
 
 @dataclass(frozen=True, slots=True)
-class BoundedReader:
+class _BoundedReader:
     """A kind of file of somebody else, and what keeps its reading in bounds."""
 
     what: str
@@ -98,36 +98,36 @@ _XML = f"{_PACKED}; {ELEMENTS:,} elements, {_mb(TAG_BYTES)} a tag, no document t
 _TREE = f"{_PACKED}; {KEPT_ELEMENTS:,} elements, {_mb(TAG_BYTES)} a tag, no document type"
 
 READERS = (
-    BoundedReader("TOML (scenario, plan, rules, space) and scripts of actions", "formats.files", _mb(TEXT_BYTES)),
-    BoundedReader("patterns in them, of tasks and streets", "formats.words", f"{PATTERN} characters"),
-    BoundedReader(
+    _BoundedReader("TOML (scenario, plan, rules, space) and scripts of actions", "formats.files", _mb(TEXT_BYTES)),
+    _BoundedReader("patterns in them, of tasks and streets", "formats.words", f"{PATTERN} characters"),
+    _BoundedReader(
         "tasks in TOML",
         "tasking.reading",
         f"{_mb(TEXT_BYTES)}, {TASK_TEXT:,} characters a text; {TASK_COST:,} values and characters made of it",
     ),
-    BoundedReader("a prompt of your own", "episode.own_prompt", "16,000 characters"),
-    BoundedReader("JSON (results, setups, calibrations)", "formats.files", f"{_PACKED}; {VALUES:,} values"),
-    BoundedReader(
+    _BoundedReader("a prompt of your own", "episode.own_prompt", "16,000 characters"),
+    _BoundedReader("JSON (results, setups, calibrations)", "formats.files", f"{_PACKED}; {VALUES:,} values"),
+    _BoundedReader(
         "lines of JSON (rows, traces, steps)",
         "formats.files",
         f"{_PACKED}; {VALUES:,} values, {_mb(LINE_BYTES)} a line",
     ),
-    BoundedReader("a recorded road", "run.road", f"{_PACKED}; {ROAD_VALUES:,} values, {_mb(LINE_BYTES)} a line"),
-    BoundedReader("SUMO's XML (networks, routes, additionals)", "formats.xml", _XML),
-    BoundedReader("OpenSCENARIO and OpenDRIVE, also packed", "exchange.tree", _TREE),
-    BoundedReader("counts in SUMO's XML", "studies.calibration.sumo_counts", _TREE),
-    BoundedReader("OSM as XML, packed XML, PBF or Overpass JSON", "osm.extract", _process(MAP)),
-    BoundedReader(
+    _BoundedReader("a recorded road", "run.road", f"{_PACKED}; {ROAD_VALUES:,} values, {_mb(LINE_BYTES)} a line"),
+    _BoundedReader("SUMO's XML (networks, routes, additionals)", "formats.xml", _XML),
+    _BoundedReader("OpenSCENARIO and OpenDRIVE, also packed", "exchange.tree", _TREE),
+    _BoundedReader("counts in SUMO's XML", "studies.calibration.sumo_counts", _TREE),
+    _BoundedReader("OSM as XML, packed XML, PBF or Overpass JSON", "osm.extract", _process(MAP)),
+    _BoundedReader(
         "a workbook (.xlsx, .xls, .ods) of counts",
         "studies.calibration.sheets",
         f"declared to unpack to {_mb(FREELY_UNPACKED_BYTES)} or {BOOK_TIMES} times its size; {CELLS:,} cells with "
         f"{_mb(CELL_BYTES)} of text; {_process(WORKBOOK)}",
     ),
-    BoundedReader(
+    _BoundedReader(
         "a table of counts as text", "studies.calibration.sheets", f"{_mb(TABLE_BYTES)}, {CELLS:,} cells"
     ),
-    BoundedReader("a table that a study packed", "formats.csvs", f"{_PACKED}; {CELLS:,} cells"),
-    BoundedReader("a picture of a trial", "report.playback", f"{PIXELS:,} pixels"),
-    BoundedReader("a bundle", "publish.archive", f"not compressed, at most its own size; {_process(BUNDLE)}"),
+    _BoundedReader("a table that a study packed", "formats.csvs", f"{_PACKED}; {CELLS:,} cells"),
+    _BoundedReader("a picture of a trial", "report.page", f"{PIXELS:,} pixels"),
+    _BoundedReader("a bundle", "publish.archive", f"not compressed, at most its own size; {_process(BUNDLE)}"),
 )
 """GeoJSON, Parquet and OSI are written and never read."""

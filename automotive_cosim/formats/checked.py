@@ -42,7 +42,6 @@ def checked(kind: type[T], values: object, place: Locator, error: type[UserError
     Args:
         kind: a dataclass whose annotations state what is valid (``annotations``).
         values: tables, lists, texts, numbers, dates, as in TOML and JSON.
-        place: gives the place of a value.
         error: the class to raise, with one line per problem.
 
     Raises:

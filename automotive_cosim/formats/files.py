@@ -106,7 +106,6 @@ def json_lines(file: IO[bytes], most_values: int | None = None, *, growing: bool
     """What each line of an open file of JSON holds.
 
     Args:
-        file: the file.
         most_values: of all lines together; by default ``bounds.VALUES``.
         growing: whether to ignore a last line that is cut short.
 
@@ -201,7 +200,6 @@ def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
     """The bytes of a file, unpacked if they are gzip's, bzip2's or xz's, whatever it is called.
 
     Args:
-        path: the file.
         growing: whether an archive that is cut short ends there, since somebody still writes it.
 
     Raises:

@@ -130,6 +130,11 @@ def weather_at(timeline: Sequence[WeatherAt], since_departure_s: float) -> Weath
     return timeline[max(index, 0)].weather
 
 
+def weather_since(timeline: Sequence[WeatherAt], passed_s: float) -> tuple[WeatherAt, ...]:
+    """The same weather for a car that departs that many seconds later."""
+    return tuple(replace(entry, at_s=entry.at_s - passed_s) for entry in timeline)
+
+
 @dataclass(frozen=True, slots=True)
 class Street:
     """``[[streets]]``: a street to check in the network."""

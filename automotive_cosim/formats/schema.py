@@ -32,7 +32,6 @@ def documented(kind: type, *, null: bool = False) -> Json:
     """The schema with descriptions from the docstrings of classes and fields; requires the source code.
 
     Args:
-        kind: a dataclass.
         null: whether an absent value may also be written as ``null``, which TOML does not have.
     """
     made: Json = adapter(kind).json_schema(schema_generator=_Documented if null else _WithoutNull)

@@ -111,7 +111,6 @@ def locked(path: Path, what: object) -> Iterator[None]:
     """Holds a lock, a file that is removed again; the system releases it however this process ends.
 
     Args:
-        path: the lock.
         what: what is written meanwhile, for errors.
 
     Raises:

@@ -45,11 +45,9 @@ def scan(
     """Reads a file, also packed; returns the encoding that it declares, in lower case.
 
     Args:
-        path: the file.
         start: called at the start of each element.
         end: called with the name at the end of each.
         text: called with each piece of text between them, and its line.
-        error: the class of errors.
         what: what the file should be, for errors.
         copy: a file to write, with the very bytes that are read, unpacked.
         most_elements: how many elements it may have; by default ``bounds.ELEMENTS``.

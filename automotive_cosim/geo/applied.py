@@ -178,7 +178,6 @@ def limits(place: Place, facts: RuleFacts) -> Iterator[AppliedRule]:
 
 
 def _names(rule: Rule, road_class: str) -> bool:
-    """Whether a rule is about a road class by name."""
     return any(test.word == "road_classes" and road_class in test.argument for test in rule.tests)
 
 

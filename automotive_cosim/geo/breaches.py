@@ -79,14 +79,10 @@ class Observed(Protocol):
     """One instant of a drive; ``cosim.Moment`` is one."""
 
     @property
-    def time_s(self) -> float:
-        """Simulation time."""
-        ...
+    def time_s(self) -> float: ...
 
     @property
-    def driving(self) -> DrivingState:
-        """State of the drive."""
-        ...
+    def driving(self) -> DrivingState: ...
 
     @property
     def context(self) -> GeoContext:

@@ -30,7 +30,6 @@ class Modem:
         """The link now.
 
         Args:
-            driving: where the car is.
             dt_s: seconds since the previous reading.
             since_departure_s: the present time on the timeline.
         """

@@ -7,7 +7,7 @@ suits simple readers: ``Speed limit here: 50 km/h (posted on Avenue Foch)``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
@@ -16,13 +16,61 @@ from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHe
 from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, said_at
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
-from automotive_cosim.geo.relevance import can_matter
 from automotive_cosim.geo.rulefacts import RuleFacts
 from automotive_cosim.geo.rules import TOPICS, Rule, Value
 from automotive_cosim.geo.sun import Sun, sun_at
 from automotive_cosim.geo.text import BUDGET_TOKENS, KM_PER_MILE, Line, amount_of_speed, position, within_budget
 from automotive_cosim.geo.weather import visibility_class
 from automotive_cosim.geo.weather import words as weather_words
+
+WINTER_BELOW_C = 7.0
+"""Where winter tyres grip better than summer tyres, as tyre makers say."""
+WARM_FROM_C = 22.0
+"""From here on a driver may want to be cooled; our choice, well below the 26 degrees of EN 16798-1."""
+_HIDING = frozenset(("drizzle", "dust", "fog", "precipitation"))
+"""Weather in which less is seen."""
+
+
+def _hidden(now: RuleFacts) -> bool:
+    return now.phenomena is None or not _HIDING.isdisjoint(now.phenomena)
+
+
+def _in_town(now: RuleFacts) -> bool:
+    return now.built_up is not False
+
+
+def _off_motorways(now: RuleFacts) -> bool:
+    return now.motorway is not True
+
+
+def _wide(now: RuleFacts) -> bool:
+    return now.motorway is not False or now.dual_carriageway is not False or now.lanes >= 2
+
+
+_ONLY_IF: Mapping[str, Callable[[RuleFacts], bool]] = {
+    "front_fog": _hidden,
+    "rear_fog": _hidden,
+    "high_beam": lambda now: now.after_sunset is not False or now.tunnel or _hidden(now),
+    "emergency_corridor": _wide,
+    "turn_on_red": _off_motorways,
+    "bus_lane": _off_motorways,
+    "through_traffic": _off_motorways,
+    "low_emission": _in_town,
+    "school_zone": _off_motorways,
+    "idling": lambda now: now.standing,
+    "alcohol": lambda now: False,  # nothing that is done at the wheel depends on it
+    "seat_belts": lambda now: False,  # they are fastened before the drive
+}
+"""Topics that do not always matter; unknown conditions count as if they could hold."""
+
+
+def can_matter(topic: str, now: RuleFacts, air_c: float | None) -> bool:
+    """Whether a topic of ``rules.TOPICS`` can matter by these facts, with that air temperature outside."""
+    if topic in ("winter_tyres", "studs", "cold"):
+        return air_c is None or air_c < WINTER_BELOW_C
+    if topic == "heat":
+        return air_c is None or air_c >= WARM_FROM_C
+    return topic not in _ONLY_IF or _ONLY_IF[topic](now)
 
 
 @dataclass(frozen=True)
@@ -48,7 +96,6 @@ class GeoContext:
 
     @property
     def speed_kmh(self) -> float:
-        """Speed of the car."""
         return self.driving.speed_mps * KMH_PER_MPS
 
     @property
@@ -61,7 +108,7 @@ class GeoContext:
         """Country, region, city, and whose rules apply.
 
         Raises:
-            GeoDataError: a rule file of the country is invalid.
+            UserError: a rule file of the country is invalid.
         """
         return NOWHERE if self.gps is None else self.atlas.place(self.gps.lon_deg, self.gps.lat_deg)
 

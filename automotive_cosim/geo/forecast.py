@@ -43,7 +43,7 @@ class Report:
     """Why it does not come from the requested source; empty if it does."""
 
 
-class WeatherSource(Protocol):
+class _WeatherSource(Protocol):
     """Gives the weather at a place and time."""
 
     def report(self, lon_deg: float, lat_deg: float, local_time: datetime) -> Report:
@@ -106,7 +106,6 @@ def drawn_weather(driving: DrivingState, departure: datetime, seed: int) -> tupl
     Every place on earth has one: the nearest station, however far, is used for an unlisted climate.
 
     Args:
-        driving: where the drive begins.
         departure: when it begins, zone-aware.
         seed: seed of the draw.
 
@@ -185,7 +184,7 @@ class OpenMeteo:
         timeout_s: how long to wait for it, wall time.
     """
 
-    def __init__(self, fallback: WeatherSource, url: str = OPEN_METEO_URL, timeout_s: float = TIMEOUT_S) -> None:
+    def __init__(self, fallback: _WeatherSource, url: str = OPEN_METEO_URL, timeout_s: float = TIMEOUT_S) -> None:
         self._fallback = fallback
         self._url = url
         self._timeout_s = timeout_s

@@ -31,9 +31,7 @@ class Reckonable(Protocol):
     """One instant as dead reckoning needs it; ``cosim.Moment`` is one."""
 
     @property
-    def time_s(self) -> float:
-        """Simulation time."""
-        ...
+    def time_s(self) -> float: ...
 
     @property
     def driving(self) -> DrivingState:

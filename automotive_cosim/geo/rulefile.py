@@ -33,7 +33,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from annotated_types import Ge, MinLen
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import GeoDataError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Called, Chosen, Form, Made, OneOf
 from automotive_cosim.formats.files import read_text
 from automotive_cosim.formats.toml import parse
@@ -197,15 +197,15 @@ def read_jurisdiction(path: Path) -> Jurisdiction:
     """Reads and checks one file; the result is cached until the file changes.
 
     Raises:
-        GeoDataError: with file, line of the entry, and reason.
+        UserError: with file, line of the entry, and reason.
     """
-    return _read(read_text(path, GeoDataError), path)
+    return _read(read_text(path, UserError), path)
 
 
 @lru_cache(maxsize=256)
 def _read(text: str, path: Path) -> Jurisdiction:
     """Of a file's text, which is parsed once in a process: that takes longer than a second of simulation."""
-    document = parse(text, path, GeoDataError)
+    document = parse(text, path, UserError)
     file = document.read(RuleFile)
     head = file.jurisdiction
     ids: set[str] = set()

@@ -44,9 +44,7 @@ class Known(Protocol):
     """One instant as the sensor knows it; ``cosim.Moment`` is one."""
 
     @property
-    def time_s(self) -> float:
-        """Simulation time."""
-        ...
+    def time_s(self) -> float: ...
 
     @property
     def driving(self) -> DrivingState:

@@ -55,9 +55,7 @@ def shown(control: GeoInput, geo: Geo, first: Moment) -> Shown:
     """The effect of a control on the observations of a drive.
 
     Args:
-        control: which one.
         geo: makes the context of another place.
-        first: the drive's first moment.
     """
     if control is GeoInput.WRONG:
         return _Elsewhere(geo, first)

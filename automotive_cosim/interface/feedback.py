@@ -26,8 +26,6 @@ def control(action: Action, cockpit: Cockpit, elements: tuple[Element, ...], *, 
     """The control that an action is about to touch, in the words of the screen; empty if it touches none.
 
     Args:
-        action: the action.
-        cockpit: before the action.
         elements: the list to which an index refers.
         by_name: whether a control may be named by what a screen reader says, not only by the letters on it.
     """

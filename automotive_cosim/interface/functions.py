@@ -71,7 +71,6 @@ def offered(interface: Interface = Interface.FUNCTIONS, geo: GeoInput = GeoInput
     """The functions of an agent: of the car, of a finger, or of both, and always to wait, speak, ask, warn and end.
 
     Args:
-        interface: how it acts.
         geo: what it is told of its place; who is told nothing has nothing to ask.
     """
     own = {str(kind) for kind in OF_ACTIONS} - (set() if geo.answers else {str(ActionType.QUERY)})
@@ -117,7 +116,6 @@ def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Ac
     """The action that a call is.
 
     Args:
-        name: of the function.
         arguments: by name, or the text of a JSON object; None for none.
 
     Raises:
@@ -194,12 +192,7 @@ def _told(field: str) -> Json:
 
 
 def signature(function: Function, *, is_told: bool = True) -> str:
-    """A function in few words: its name with its arguments and their values, those in brackets optional.
-
-    Args:
-        function: the function.
-        is_told: whether it says what it does.
-    """
+    """A function in few words: its name with its arguments and their values, those in brackets optional."""
     required = function.parameters["required"]
     told = ((name, f"{name}: {_values(schema)}") for name, schema in function.parameters["properties"].items())
     arguments = ", ".join(words if name in required else f"[{words}]" for name, words in told)

@@ -26,14 +26,11 @@ def observe(
     """An agent's observation of the present moment.
 
     Args:
-        world: the co-simulation.
         goal: what the driver said.
         hand_over_s: simulation time at which the agent took over.
         elements: the accessibility elements of the present screen.
         feedback: the result of the last action.
-        channels: the channels that the agent is given.
         said: what the driver has said since the hand-over.
-        policy: which rules it is told.
     """
     moment = world.moment
     return Observation(

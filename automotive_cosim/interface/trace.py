@@ -88,7 +88,6 @@ class Hash:
             self.add(step)
 
     def add(self, step: Step) -> None:
-        """Adds the next step."""
         texts = {
             "traffic": _text(plain(step.moment.driving)),
             "signals": _text(dict(step.moment.signals)),
@@ -107,7 +106,6 @@ class Hash:
         return self._digest.hexdigest()
 
     def copy(self) -> Hash:
-        """An independent copy."""
         twin = Hash()
         twin._digest, twin.count = self._digest.copy(), self.count
         return twin

@@ -31,7 +31,6 @@ def actions_of(command: Command, state: State) -> tuple[Action, ...] | None:
     """The calls that do what a command does.
 
     Args:
-        command: what is commanded.
         state: the car's state just before.
 
     Returns:

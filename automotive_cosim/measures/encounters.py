@@ -180,7 +180,6 @@ def as_csv(
 
     Args:
         rows: encounters or readings.
-        kind: of what they are.
         trials: the trial of each row, for a first column; None if they are all of one.
     """
     names = _names(kind)
@@ -458,7 +457,6 @@ class _DrivenPath:
         return self.times_s[-1] + (way_m - self.ways_m[-1]) / max(CREEPING_MPS, self.vehicle.speed_mps)
 
     def speed_mps(self, way_m: float) -> float:
-        """Its speed there."""
         ahead = self.passes_s(way_m + 1.0) - self.passes_s(way_m)
         return 1.0 / ahead if ahead > 0 else max(CREEPING_MPS, self.vehicle.speed_mps)
 

@@ -50,8 +50,6 @@ def required_deceleration_mps2(
 
     Args:
         gap_m: from bumper to bumper.
-        follower_mps: speed of the follower.
-        leader_mps: speed of the leader.
         leader_brakes_mps2: its deceleration, which it keeps up until it stands; the DRAC is the case of 0.
 
     Returns:
@@ -74,7 +72,6 @@ def crossing_time_to_collision_s(
 
     Args:
         first: metres to the point of crossing and metres per second of the one who reaches it first.
-        second: the same of the other.
         first_length_m: how much further the first must drive to leave it.
     """
     (first_m, first_mps), (second_m, second_mps) = first, second
@@ -89,7 +86,6 @@ def crossing_drac_mps2(second_m: float, second_mps: float, first_leaves_s: float
 
     Args:
         second_m: metres to the point of crossing of the one who reaches it second.
-        second_mps: its speed.
         first_leaves_s: when the first leaves the point, seconds from now.
     """
     if second_mps <= 0 or second_m <= 0 or second_m / second_mps >= first_leaves_s:
@@ -126,10 +122,7 @@ def delta_v_mps(
     """Delta-v of oneself: both velocities become one, and the momentum stays.
 
     Args:
-        own_kg: own mass.
-        other_kg: the other's.
         own_mps: own velocity, to the east and to the north.
-        other_mps: the other's.
     """
     relative_mps = hypot(own_mps[0] - other_mps[0], own_mps[1] - other_mps[1])
     return other_kg / (own_kg + other_kg) * relative_mps

@@ -32,7 +32,6 @@ def make_model(name: str, api: ProviderApi | None = None, turns: Turns | None = 
     """A model by name.
 
     Args:
-        name: its name.
         api: the protocol of its endpoint, if it has one; by default chat completions.
         turns: where a model with a limit of questions a minute takes its turns; by default its own.
 

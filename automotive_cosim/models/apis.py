@@ -41,7 +41,6 @@ class ProviderApi(Protocol):
 
         Args:
             model: the provider's name of the model.
-            messages: the conversation.
             limits: ``seed``, ``temperature`` and ``max_tokens``, those that are set.
         """
         ...
@@ -431,7 +430,6 @@ def _text(content: object, *, is_thought: bool = False) -> str:
     """A string, or the text parts of a list; nothing else counts as text.
 
     Args:
-        content: of an answer.
         is_thought: whether the thoughts among the parts are wanted, instead of the words.
     """
     if isinstance(content, str):

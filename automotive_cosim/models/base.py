@@ -128,12 +128,7 @@ DEAREST_USD = 1e-3
 
 
 def believed(reply: ModelReply, seconds: float) -> ModelReply:
-    """A reply with as many tokens and dollars as whoever tells them can have used, and no more.
-
-    Args:
-        reply: as the other side tells it.
-        seconds: that passed here.
-    """
+    """A reply with as many tokens and dollars as whoever tells them can have used, and no more."""
     most_in, most_out = (int(rate * (1.0 + seconds)) for rate in (IN_PER_S, OUT_PER_S))
     tokens_in, tokens_out = min(reply.tokens_in, most_in), min(reply.tokens_out, most_out)
     return replace(

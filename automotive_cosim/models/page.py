@@ -57,7 +57,6 @@ class Page:
 
     @classmethod
     def read(cls, prompt: str) -> Page:
-        """Parses a prompt."""
         parts = re.split(r"^## (.+)$", prompt, flags=re.MULTILINE)
         sections = {title.strip(): body.strip() for title, body in zip(parts[1::2], parts[2::2], strict=True)}
 
@@ -173,7 +172,6 @@ ACROSS = re.compile(r"x (\d+) to (\d+), y (\d+)")
 
 
 def _elements(line: str) -> Iterator[ListedElement]:
-    """The elements on a line."""
     for found in BRIEF.finditer(line):
         state = found[4] or ""
         across = ACROSS.search(state)

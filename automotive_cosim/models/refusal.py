@@ -86,7 +86,6 @@ def pause_asked_s(headers: Mapping[str, str], body: object) -> float | None:
 
     Args:
         headers: of its answer, by names in small letters; a date in them counts from its own clock, if it tells it.
-        body: of its answer.
     """
     told_s = [
         _seconds(headers.get("retry-after-ms") or headers.get("x-ms-retry-after-ms"), 1e-3),

@@ -115,7 +115,6 @@ def make_remote(spec: str, api: ProviderApi | None = None, turns: Turns | None =
     """The model ``PROVIDER/NAME`` or ``PROVIDER/NAME?settings``.
 
     Args:
-        spec: its name.
         api: the protocol of its endpoint; by default chat completions.
         turns: where it takes its turns; by default its own.
 
@@ -183,10 +182,7 @@ class Remote:
         Args:
             name: the name written into results.
             model: the provider's name of it.
-            settings: how to ask it.
-            endpoint: where to ask it.
             api: the protocol in which to ask it.
-            turns: where it takes its turns.
             sleep: waits for a number of seconds, between attempts and for the rate limit.
 
         Raises:

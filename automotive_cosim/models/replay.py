@@ -38,9 +38,7 @@ class Replay:
 
         Args:
             answers: the digest of each question with its answer.
-            sees_pictures: whether the questions had pictures.
             digest_of: makes the digest of a question.
-            again: with what it has to be replayed.
         """
         self._left = deque(answers)
         self._count = len(answers)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 
 KM_PER_DEG = 111.2
 """Metres per degree of latitude, on a sphere as large as the earth."""
@@ -24,19 +24,19 @@ class Area(NamedTuple):
         """Reads ``WEST,SOUTH,EAST,NORTH``.
 
         Raises:
-            ImportMapError: it is not such an area, or is empty.
+            UserError: it is not such an area, or is empty.
         """
         try:
             west_deg, south_deg, east_deg, north_deg = (float(part) for part in text.split(","))
         except ValueError:
             west_deg = south_deg = east_deg = north_deg = math.nan
         if -180 <= east_deg < west_deg <= 180:
-            raise ImportMapError(
+            raise UserError(
                 f"--bbox {text!r} reaches over the 180th meridian, which no SUMO network can; give one side: "
                 f"{west_deg:g},{south_deg:g},180,{north_deg:g} or -180,{south_deg:g},{east_deg:g},{north_deg:g}"
             )
         if not (-180 <= west_deg < east_deg <= 180 and -90 <= south_deg < north_deg <= 90):
-            raise ImportMapError(
+            raise UserError(
                 f"--bbox {text!r} is not an area on earth; give WEST,SOUTH,EAST,NORTH in degrees, such as "
                 "2.28,48.86,2.31,48.88"
             )

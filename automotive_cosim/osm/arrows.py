@@ -99,7 +99,6 @@ def leads_there(lanes: LaneArrows, built: BuiltLanes) -> bool:
     netconvert may call straight on and slightly right.
 
     Args:
-        lanes: the arrows.
         built: the connections, also of lanes beyond those with arrows.
     """
     if len(built) < len(lanes):

@@ -18,7 +18,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.osm.network import Built, entries, exits
 from automotive_cosim.traffic.network import Edge, Network
@@ -61,7 +61,6 @@ class DrawnRoute:
 
     @property
     def length_m(self) -> float:
-        """Its length."""
         return sum(edge.length_m for edge in self.way)
 
 
@@ -88,7 +87,6 @@ def draw(
 
     Args:
         built: the imported network.
-        net_file: its file.
         scratch: a folder for intermediate files.
         density_per_km: vehicles per kilometre of lane at a time if all drove freely. Unlike the number of
             departures, this measures how full a network is, whatever its size.
@@ -96,18 +94,18 @@ def draw(
         rng: source of all randomness.
 
     Raises:
-        ImportMapError: the requested traffic is less than one vehicle, or no trip can be driven.
+        UserError: the requested traffic is less than one vehicle, or no trip can be driven.
     """
     ends = _Ends(built)
     sample = [(built.edges[start], built.edges[goal]) for start, goal in ends.pairs(SAMPLES, rng).tolist()]
     routes = tuple(DrawnRoute(way) for way in fastest_ways(sample, built.network, net_file, scratch) if way)
     if not routes:
-        raise ImportMapError("no two roads of this map are connected; give a larger extract")
+        raise UserError("no two roads of this map are connected; give a larger extract")
     travel_time_s = float(np.mean([sum(edge.length_m / edge.speed_mps for edge in route.way) for route in routes]))
     lane_km = sum(edge.length_m * len(edge.lane_ids) for edge in built.edges) / 1000
     count = round(density_per_km * lane_km * duration_s / travel_time_s)
     if not count:
-        raise ImportMapError(
+        raise UserError(
             f"{density_per_km:g} vehicles per km on {lane_km:.1f} km make less than one; raise --density"
         )
     pairs = ends.pairs(count, rng).tolist()
@@ -220,12 +218,10 @@ def fastest_ways(
 
     Args:
         ends: first and last edge of each route.
-        network: the network.
-        net_file: its file.
         scratch: a folder for intermediate files.
 
     Raises:
-        ImportMapError: duarouter refuses the network.
+        UserError: duarouter refuses the network.
     """
     asked, routed = scratch / "asked.trips.xml", scratch / "routed.rou.xml"
     rows = (f'<trip id="{number}" depart="0" {_ends(*pair)}/>' for number, pair in enumerate(ends))
@@ -244,7 +240,7 @@ def fastest_ways(
         folder=scratch,
     )
     if not ok:
-        raise ImportMapError(f"SUMO's duarouter cannot route on this map: {first_error(printed)}")
+        raise UserError(f"SUMO's duarouter cannot route on this map: {first_error(printed)}")
     found = dict(_read_ways(routed, network))
     return [found.get(number, ()) for number in range(len(ends))]
 

@@ -61,7 +61,6 @@ def expect(tags: Mapping[str, str], country: str, *, miles: Container[str], metr
     """Reads the tags of a way.
 
     Args:
-        tags: the way's.
         country: ISO 3166-1 code of the map.
         miles: the countries in whose zones a number is in miles per hour.
         metric: those where it is in kilometres per hour.

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import GroundKind
-from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_utf8, open_file, opened
 from automotive_cosim.formats.limited import read_limited
@@ -135,12 +135,12 @@ class Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
 
         Raises:
-            ImportMapError: it contains no road.
+            UserError: it contains no road.
         """
         part = self.part({ref: node for ref, node in self.nodes.items() if area.holds(*node.position)})
         if not part.ways:
             west, south, east, north = self.bounds
-            raise ImportMapError(
+            raise UserError(
                 f"no road in the --bbox; the map reaches from {west:.4f},{south:.4f} to {east:.4f},{north:.4f}"
             )
         return replace(
@@ -186,12 +186,12 @@ def read(source: Path) -> Extract:
     content, not by name.
 
     Raises:
-        ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
+        UserError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
     if not is_json(_head(source)):
         _osmium()
-    return read_limited(_read, source, bounds.MAP, ImportMapError)
+    return read_limited(_read, source, bounds.MAP, UserError)
 
 
 def _read(source: Path) -> Extract:
@@ -206,7 +206,7 @@ def _read(source: Path) -> Extract:
     is_open = [any(directions(way.tags)) for way in complete]
     opened = tuple(compress(complete, is_open))
     if not opened:
-        raise ImportMapError(
+        raise UserError(
             f"{source} has no roads for cars ({len(ways)} ways tagged as such, with {len(nodes)} of their nodes);"
             " give an extract that keeps highway=* ways and their nodes"
         )
@@ -287,7 +287,7 @@ def _read_osm(source: Path) -> _Parts:
                     raise
                 return _read_sorted(file, kind, deleted, Path(scratch))
         except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
-            raise ImportMapError(_explain(source, str(error))) from error
+            raise UserError(_explain(source, str(error))) from error
 
 
 OLD_VERSIONS = ("1", "1.0", "")
@@ -401,10 +401,10 @@ def _head(source: Path) -> bytes:
         with open_file(source) as stream:
             return stream.read(4096)
     except OSError as error:
-        raise ImportMapError(f"{source}: {error.strerror or error}; give the path of an OSM extract") from error
+        raise UserError(f"{source}: {error.strerror or error}; give the path of an OSM extract") from error
 
 
-class _UnreadableError(ImportMapError):
+class _UnreadableError(UserError):
     """XML that osmium's own words describe better."""
 
 
@@ -431,7 +431,7 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
         elif name == "center" or (name == "bounds" and within):
             version = ""
         elif name == "count":
-            raise ImportMapError(f"{source} {COUNTS}")
+            raise UserError(f"{source} {COUNTS}")
         elif name == "remark":
             with opened(source) as stream:
                 remark = re.search(rb"<remark>(.*?)</remark>", stream.read(), re.DOTALL)
@@ -439,7 +439,7 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
         for key, most in (("lat", 90), ("lon", 180)) if name == "node" else ():
             text = attributes.get(key, "0")
             if not POSITION.fullmatch(text) or abs(float(text)) > most:
-                raise ImportMapError(f"{source} line {line}: {key} is {text[:40]!r}; it is from {-most} to {most}")
+                raise UserError(f"{source} line {line}: {key} is {text[:40]!r}; it is from {-most} to {most}")
         if attributes.get("action") == "delete" or attributes.get("visible") == "false":
             number = attributes.get("id", "")
             if _ID.fullmatch(number):
@@ -449,13 +449,13 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
         scan(source, start, error=_UnreadableError)
     except _UnreadableError as error:
         if isinstance(error.__cause__, OSError):
-            raise ImportMapError(f"{source} is truncated or damaged ({error.__cause__})") from error
+            raise UserError(f"{source} is truncated or damaged ({error.__cause__})") from error
     return deleted, version
 
 
 def _format(source: Path, head: bytes) -> str:
     if not head:
-        raise ImportMapError(f"{source} is empty; download the extract again")
+        raise UserError(f"{source} is empty; download the extract again")
     if head.startswith(b"\x1f\x8b"):
         return "osm.gz"
     if head.startswith(b"BZh"):
@@ -465,7 +465,7 @@ def _format(source: Path, head: bytes) -> str:
     if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
         return "osm"
     kind = "a zip archive; unpack it and" if head.startswith(b"PK\x03\x04") else "not OSM data;"
-    raise ImportMapError(f"{source} is {kind} give OSM XML (plain, .gz or .bz2), .osm.pbf or Overpass JSON")
+    raise UserError(f"{source} is {kind} give OSM XML (plain, .gz or .bz2), .osm.pbf or Overpass JSON")
 
 
 def _explain(source: Path, error: str) -> str:

@@ -58,7 +58,6 @@ def ends_facing(front_deg: float, along_deg: float) -> tuple[str, ...]:
     """The traffic on a way that comes from where a thing faces; both directions, or none, if it faces across.
 
     Args:
-        front_deg: where its front faces.
         along_deg: where the way leads, with its nodes.
     """
     against = turned_deg(front_deg, along_deg)

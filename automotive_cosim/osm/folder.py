@@ -10,7 +10,7 @@ from datetime import datetime
 from pathlib import Path
 
 from automotive_cosim.contracts import Weather
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats import writing
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.scenarios import Sumo, Trip
@@ -45,17 +45,17 @@ def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
     """An empty folder that becomes ``out`` if the block succeeds; otherwise nothing is left.
 
     Raises:
-        ImportMapError: ``out`` exists and must not be replaced, is not a scenario's folder, or cannot be written.
+        UserError: ``out`` exists and must not be replaced, is not a scenario's folder, or cannot be written.
     """
     if out.exists() and not replaces:
-        raise ImportMapError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
+        raise UserError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
     if out.exists() and not (out / "scenario.toml").is_file():
-        raise ImportMapError(f"{out} is not a scenario folder, so it is not replaced; choose another --out")
+        raise UserError(f"{out} is not a scenario folder, so it is not replaced; choose another --out")
     try:
         with writing.appearing(out, replaces=replaces) as building:
             yield building
     except OSError as error:
-        raise ImportMapError(f"{out} cannot be written ({error.strerror}); choose another --out") from error
+        raise UserError(f"{out} cannot be written ({error.strerror}); choose another --out") from error
 
 
 def write_config(

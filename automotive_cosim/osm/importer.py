@@ -13,7 +13,7 @@ import numpy as np
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, land_cover, network, trips
 from automotive_cosim.osm.country import country_codes
@@ -79,7 +79,7 @@ def import_map(
         on_progress: called with the current activity.
 
     Raises:
-        ImportMapError: the extract or an option cannot be used, or ``out`` cannot be written.
+        UserError: the extract or an option cannot be used, or ``out`` cannot be written.
         SetupError: eclipse-sumo or osmium is not installed.
     """
     options = options or ImportOptions()
@@ -93,7 +93,7 @@ def import_map(
             mapped = mapped.crop(options.area)
         west, _, east, _ = mapped.bounds
         if east - west > HALF_TURN_DEG:
-            raise ImportMapError(
+            raise UserError(
                 f"{source} has roads on both sides of the 180th meridian, which no SUMO network can; give one: "
                 "--bbox 0,-90,180,90 or --bbox=-180,-90,0,90"
             )
@@ -146,19 +146,19 @@ def import_map(
 
 def _check(options: ImportOptions) -> None:
     if not re.fullmatch(r"\w[\w.-]*", options.name):
-        raise ImportMapError(f"{options.name!r} is not a valid scenario name; use letters, digits, - and _")
+        raise UserError(f"{options.name!r} is not a valid scenario name; use letters, digits, - and _")
     if options.country and options.country not in country_codes():
-        raise ImportMapError(f"country {options.country!r} is not an ISO 3166-1 code; give two letters such as FR")
+        raise UserError(f"country {options.country!r} is not an ISO 3166-1 code; give two letters such as FR")
     for what, value in (("density", options.density_per_km), ("duration", options.stable_for_min)):
         if not 0 < value < math.inf:
-            raise ImportMapError(f"a {what} of {value:g} is impossible; give a number above zero")
+            raise UserError(f"a {what} of {value:g} is impossible; give a number above zero")
     if options.density_per_km > FULL_PER_KM:
-        raise ImportMapError(
+        raise UserError(
             f"a density of {options.density_per_km:g} vehicles per km of lane is impossible: at most "
             f"{FULL_PER_KM:.0f} fit, bumper to bumper; give a number such as 1"
         )
     if options.seed < 0:
-        raise ImportMapError(f"seed {options.seed} is below zero; give a whole number from 0")
+        raise UserError(f"seed {options.seed} is below zero; give a whole number from 0")
 
 
 def _ground(options: ImportOptions) -> str:
@@ -228,7 +228,7 @@ class _Search:
             The figures of the last trial, the trips that drive, and what stood for good in a trial.
 
         Raises:
-            ImportMapError: no traffic flows.
+            UserError: no traffic flows.
         """
         self._write_demand()
         scale = QUICK_DENSITY if self._options.quick else 1.0
@@ -262,7 +262,7 @@ class _Search:
             self._tell(f"scale {scale:g} does not flow: {_why(run)}", None)
             rest_flows = run.halted_share_max < HALTED_SHARE_AIM and self._left_out(run)
             if not trials_left or (scale <= SCALE_MIN and not rest_flows):
-                raise ImportMapError(
+                raise UserError(
                     f"traffic on this map locks up even at a scale of {scale:g} ({_why(run)});"
                     " give a larger extract or a lower --density"
                 )

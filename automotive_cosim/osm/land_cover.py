@@ -112,7 +112,6 @@ class DrawnGround:
     """Areas beyond the largest that are kept."""
 
     def count(self, kind: GroundKind) -> int:
-        """How many there are of a kind."""
         return sum(area.kind is kind for area in self.areas)
 
 

@@ -45,14 +45,7 @@ def read_links(text: str) -> Links:
 
 
 def with_stops(text: str, links: Links, edges: Set[str], junctions: Set[str]) -> tuple[str, Links]:
-    """A network's text and connections with cars that stop before they yield.
-
-    Args:
-        text: the network's.
-        links: its connections.
-        edges: those at whose end cars stop.
-        junctions: the junctions there.
-    """
+    """A network's text and connections with cars that stop before they yield."""
 
     def stopping(link: re.Match[str]) -> str:
         return f'{link[0][:-2]}s"' if link[1] in edges and link[7] == "m" else link[0]

@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.sax.saxutils import quoteattr, unescape
 
 from automotive_cosim.contracts import Tell
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.osm.barriers import Cut, Piece, cut
 from automotive_cosim.osm.cameras import Cameras, cameras_of
@@ -112,7 +112,6 @@ def convert(
     parameters of its road (``MappedRoad.parameters``), and the positions of its speed cameras.
 
     Args:
-        extract: the map.
         roads: its roads, by OSM way.
         target: the file to create.
         country: ISO 3166-1 code, which decides the driving side.
@@ -120,7 +119,7 @@ def convert(
         tell: called with the current activity.
 
     Raises:
-        ImportMapError: netconvert refuses the map, or nothing drivable remains.
+        UserError: netconvert refuses the map, or nothing drivable remains.
         SetupError: netconvert is not installed.
     """
     raw = scratch / "roads.net.xml"
@@ -163,10 +162,10 @@ def convert(
     if not ok and patched and _PATCH_FAILED.search(printed):
         ok, printed = converted({})
     if not ok and "No nodes loaded" not in printed:
-        raise ImportMapError(f"netconvert cannot build a network from this map: {first_error(printed)}")
+        raise UserError(f"netconvert cannot build a network from this map: {first_error(printed)}")
     text = raw.read_text(encoding="utf-8") if ok else ""
     if "<lane " not in text:
-        raise ImportMapError(
+        raise UserError(
             "no drivable road remains of this map after reducing it to cars and to its largest connected part;"
             " give a larger extract"
         )

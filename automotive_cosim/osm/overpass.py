@@ -24,11 +24,10 @@ from pathlib import Path
 from typing import IO
 
 from automotive_cosim.contracts import Tell
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import copy, drafted
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.land_cover import TAGS
-from automotive_cosim.osm.settings import DownloadLimits
 
 LARGEST_KM2 = 2500.0
 """A large city. Larger areas are available as PBF extracts."""
@@ -44,6 +43,17 @@ LONGEST_PAUSE_S = 120.0
 """Pause before the second attempt; doubled each time, unless the server says how long."""
 
 PIECE_BYTES = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class DownloadLimits:
+    """How patient a download is."""
+
+    timeout_s: float = 180.0
+    """Seconds without an answer before giving up."""
+    tries: int = 4
+    """Maximum number of requests to a busy server."""
+    size_mb: float = 500.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,14 +115,13 @@ def download(
 
     Args:
         endpoint: URL of an Overpass API's ``interpreter``.
-        area: the area to fetch.
         target: the file to create; it must not exist.
         limits: limits of time, attempts and size.
         tell: called with the current activity.
         sleep: called to pause.
 
     Raises:
-        ImportMapError: the endpoint, the area or the target cannot be used, or the server returns no map.
+        UserError: the endpoint, the area or the target cannot be used, or the server returns no map.
     """
     limits = limits or DownloadLimits()
     _check(endpoint, area, target)
@@ -131,23 +140,23 @@ def download(
             found = _judge(fetched, endpoint)
             copy(fetched, target, round(limits.size_mb * 1e6))
     except OSError as error:
-        raise ImportMapError(f"{target} cannot be written ({error.strerror}); choose another --out") from error
+        raise UserError(f"{target} cannot be written ({error.strerror}); choose another --out") from error
     return found
 
 
 def _check(endpoint: str, area: Area, target: Path) -> None:
     parts = urllib.parse.urlsplit(endpoint)
     if parts.scheme not in ("http", "https") or not parts.netloc:
-        raise ImportMapError(
+        raise UserError(
             f"{endpoint!r} is not an Overpass endpoint; give a URL that ends in /api/interpreter with --endpoint"
         )
     if area.size_km2 > LARGEST_KM2:
-        raise ImportMapError(
+        raise UserError(
             f"the area has {area.size_km2:.0f} km2, more than the {LARGEST_KM2:.0f} that a server should be "
             "asked for; give a smaller --bbox, or download an extract and crop it with `scenarios import --bbox`"
         )
     if target.exists():
-        raise ImportMapError(f"{target} exists; choose another --out")
+        raise UserError(f"{target} exists; choose another --out")
 
 
 def _fetch_patiently(
@@ -164,7 +173,7 @@ def _fetch_patiently(
         except _BusyError as error:
             if not left:
                 times = "once" if limits.tries == 1 else f"{limits.tries} times"
-                raise ImportMapError(
+                raise UserError(
                     f"{request.full_url} returned no map, asked {times}: {error}; try later, or another --endpoint"
                 ) from error
             wait_s = min(LONGEST_PAUSE_S, error.pause_s or pause_s)
@@ -188,14 +197,14 @@ def _fetch(request: urllib.request.Request, target: Path, limits: DownloadLimits
             raise _BusyError(
                 f"it is busy (HTTP {error.code})", float(after) if after.isdigit() else None
             ) from error
-        raise ImportMapError(f"{request.full_url} refuses (HTTP {error.code}): {text}") from error
+        raise UserError(f"{request.full_url} refuses (HTTP {error.code}): {text}") from error
     except TimeoutError as error:
         raise _BusyError(f"no answer in {limits.timeout_s:g} s") from error
     except urllib.error.URLError as error:
         if isinstance(error.reason, TimeoutError):
             raise _BusyError(f"no answer in {limits.timeout_s:g} s") from error
         if isinstance(error.reason, socket.gaierror):
-            raise ImportMapError(f"{request.full_url}: no such host; is there a network?") from error
+            raise UserError(f"{request.full_url}: no such host; is there a network?") from error
         raise _BusyError(f"it cannot be reached ({error.reason})") from error
     except (http.client.HTTPException, ConnectionError) as error:
         raise _BusyError(f"the connection broke ({type(error).__name__})") from error
@@ -206,7 +215,7 @@ def _copy(answer: http.client.HTTPResponse, file: IO[bytes], limits: DownloadLim
     while piece := answer.read(PIECE_BYTES):
         size += len(piece)
         if size > limits.size_mb * 1e6:
-            raise ImportMapError(f"the map is larger than {limits.size_mb:g} MB; give a smaller --bbox or --max-mb")
+            raise UserError(f"the map is larger than {limits.size_mb:g} MB; give a smaller --bbox or --max-mb")
         file.write(piece)
         tell(f"receiving, {size / 1e6:.1f} MB", None)
     if size < int(answer.headers.get("Content-Length", 0)):
@@ -217,7 +226,7 @@ def _judge(file: Path, endpoint: str) -> Download:
     """Checks that an answer is a complete map.
 
     Raises:
-        ImportMapError: it is not.
+        UserError: it is not.
     """
     size = file.stat().st_size
     with file.open("rb") as stream:
@@ -225,16 +234,14 @@ def _judge(file: Path, endpoint: str) -> Download:
         stream.seek(max(0, size - 4096))
         tail = stream.read().decode("utf-8", "replace")
     if "<osm" not in head:
-        raise ImportMapError(
+        raise UserError(
             f"{endpoint} did not answer with a map but with {_words(head) or 'nothing'!r}; is it an Overpass API?"
         )
     remark = re.search(r"<remark>(.*?)</remark>", tail, re.DOTALL)
     if remark:
-        raise ImportMapError(
-            f"the server stopped: {_words(remark[1])}; give a smaller --bbox or a longer --timeout"
-        )
+        raise UserError(f"the server stopped: {_words(remark[1])}; give a smaller --bbox")
     if not tail.rstrip().endswith("</osm>"):
-        raise ImportMapError(f"the answer from {endpoint} is truncated after {size / 1e6:.1f} MB; try again")
+        raise UserError(f"the answer from {endpoint} is truncated after {size / 1e6:.1f} MB; try again")
     note = re.search(r"<note>(.*?)</note>", head, re.DOTALL)
     date = re.search(r'<meta [^>]*osm_base="([^"]*)"', head)
     return Download(size / 1e6, _words(note[1]) if note else "", date[1] if date else "")

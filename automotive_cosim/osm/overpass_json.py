@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.words import shown
@@ -44,11 +44,11 @@ def refuse_broken_off(source: Path, remark: str) -> None:
     """Refuses an answer after which a server says that it stopped.
 
     Raises:
-        ImportMapError: it says so.
+        UserError: it says so.
     """
     if BROKEN_OFF.search(remark):
         words = " ".join(remark.split())
-        raise ImportMapError(
+        raise UserError(
             f"{source} is not whole: the server stopped ({words}); ask it again, for less or with a longer timeout"
         )
 
@@ -60,21 +60,21 @@ class OverpassJson:
         """Reads a file.
 
         Raises:
-            ImportMapError: it is truncated, or not the JSON of an Overpass server.
+            UserError: it is truncated, or not the JSON of an Overpass server.
         """
         try:
             # As many values as there are bytes: the process that reads it has limits.
             read = read_json(source, bounds.UNPACKED_BYTES)
         except (OSError, ValueError) as error:
-            raise ImportMapError(f"{source} is truncated or not JSON ({error}); download it again") from error
+            raise UserError(f"{source} is truncated or not JSON ({error}); download it again") from error
         elements = read.get("elements") if isinstance(read, dict) else None
         if not isinstance(elements, list) or not all(isinstance(element, dict) for element in elements):
-            raise ImportMapError(
+            raise UserError(
                 f"{source} is JSON but has no OSM elements; give the answer of an Overpass server ([out:json])"
             )
         refuse_broken_off(source, str(read.get("remark", "")))
         if elements and all(element.get("type") == "count" for element in elements):
-            raise ImportMapError(f"{source} {COUNTS}")
+            raise UserError(f"{source} {COUNTS}")
         self._source = source
         self._elements: list[dict[str, Any]] = elements
 
@@ -105,7 +105,7 @@ class OverpassJson:
     def _refs(self, way: Mapping[str, Any]) -> list[int]:
         refs = way.get("nodes")
         if not isinstance(refs, list) or not all(isinstance(ref, int) and abs(ref) <= LARGEST_ID for ref in refs):
-            raise ImportMapError(
+            raise UserError(
                 f"{self._source} has way {shown(way.get('id'))} without its nodes; ask for them: "
                 "out body; >; out skel;"
             )
@@ -114,19 +114,19 @@ class OverpassJson:
     def _number(self, element: Mapping[str, Any], key: str) -> int:
         value = element.get(key)
         if not isinstance(value, int) or abs(value) > LARGEST_ID:
-            raise ImportMapError(f"{self._source} has an element whose {key} is {shown(value)}; download it again")
+            raise UserError(f"{self._source} has an element whose {key} is {shown(value)}; download it again")
         return value
 
     def _position(self, element: Mapping[str, Any]) -> tuple[float, float]:
         lon, lat = element.get("lon"), element.get("lat")
         if isinstance(lon, int | float) and isinstance(lat, int | float) and abs(lon) <= 180 and abs(lat) <= 90:
             return float(lon), float(lat)
-        raise ImportMapError(f"{self._source} has node {shown(element.get('id'))} without a position on earth")
+        raise UserError(f"{self._source} has node {shown(element.get('id'))} without a position on earth")
 
     def _list(self, element: Mapping[str, Any], key: str) -> list[Any]:
         value = element.get(key) or []
         if not isinstance(value, list):
-            raise ImportMapError(f"{self._source} has an element whose {key} is {shown(value)}; download it again")
+            raise UserError(f"{self._source} has an element whose {key} is {shown(value)}; download it again")
         return value
 
 

@@ -60,9 +60,7 @@ def _lanes_beyond(edge: Edge, node: Callable[[Edge], str], there: Mapping[str, S
     without such roads.
 
     Args:
-        edge: the edge.
         node: the end of an edge to go on from.
-        there: the edges beyond each node.
     """
     seen: set[str] = set()
     while edge.edge_id not in seen:

@@ -38,7 +38,6 @@ def open_traps(text: str, links: Links) -> tuple[str, tuple[str, ...]]:
 
     Args:
         text: a SUMO network.
-        links: its connections.
 
     Returns:
         The network, and the edges on which lanes were opened.

@@ -173,7 +173,6 @@ def describe(extract: Extract, atlas: Atlas, country: str) -> dict[int, MappedRo
     """The roads of a map, by OSM way.
 
     Args:
-        extract: the map.
         atlas: the law of every place, which sets the limits that no sign does.
         country: ISO 3166-1 code of the map. Each road is under the law of the land on which it lies; if none lies
             in this country, the map's positions are not trusted, and all are under its law.
@@ -204,8 +203,6 @@ def on_one_side(extract: Extract, atlas: Atlas, country: str) -> Extract:
     """The map without the roads of lands where traffic keeps the other side: a SUMO network keeps one.
 
     Args:
-        extract: the map.
-        atlas: the lands.
         country: ISO 3166-1 code of the one whose side the network keeps; if nothing lies in it, the map's positions
             are not trusted, and all is kept.
     """

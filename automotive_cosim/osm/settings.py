@@ -1,4 +1,4 @@
-"""What can be set about an import and a download. Each field is an option of its command."""
+"""What can be set about an import. Each field is an option of ``scenarios import``."""
 
 from __future__ import annotations
 
@@ -31,15 +31,3 @@ class ImportOptions:
     """Use light traffic, and test it for only ten minutes."""
     replaces: Annotated[bool, Option("force")] = False
     """Replace the scenario in --out."""
-
-
-@dataclass(frozen=True, slots=True)
-class DownloadLimits:
-    """How patient a download is."""
-
-    timeout_s: Annotated[float, Ge(1), Le(3600), Option(form="S")] = 180.0
-    """Seconds without an answer before giving up."""
-    tries: Annotated[int, Ge(1), Le(20)] = 4
-    """Maximum number of requests to a busy server."""
-    size_mb: Annotated[float, Ge(0.001), Le(10_000), Option("max-mb", form="MB")] = 500.0
-    """Size limit of the map."""

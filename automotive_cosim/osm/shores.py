@@ -42,7 +42,6 @@ def cut_water(shores: Iterable[Shore], roads: Sequence[Shore]) -> list[Polygon]:
 
     Args:
         shores: the pieces that are known of the shores of one water, islands included.
-        roads: the roads of the map.
     """
     known = union_all([LineString(line) for line in shores if len(line) > 1])
     if known.is_empty or not roads:
@@ -77,11 +76,6 @@ def _water(shores: BaseGeometry, roads: MultiLineString, frame: Polygon) -> list
 def closed_water(outer: Iterable[Shore], inner: Iterable[Shore], roads: Sequence[Shore]) -> list[Polygon]:
     """The water within shores of which pieces are missing: each stretch that is known is closed by a straight line;
     nothing where more road would lie on it than a bridge.
-
-    Args:
-        outer: the pieces that are known of its shores.
-        inner: those of its islands.
-        roads: the roads of the map.
     """
     ways = MultiLineString([LineString(line) for line in roads])
     islands = union_all(_filled(inner))

@@ -72,7 +72,6 @@ class Joints:
 
         Args:
             pieces: the roads, cut at barriers.
-            may: the directions open on each.
             nodes: the map's.
         """
         self.pieces, self.may, self.nodes = pieces, may, nodes
@@ -275,12 +274,7 @@ def _rule(joints: Joints, signs: MappedSigns, every: set[int]) -> None:
 
 
 def patches(signs: MappedSigns, first_number: int) -> dict[str, str]:
-    """What netconvert is told of the signs, by the option that takes it; empty without any.
-
-    Args:
-        signs: the signs.
-        first_number: of the pieces.
-    """
+    """What netconvert is told of the signs, by the option that takes it; empty without any."""
     if not signs.types and not signs.ruled:
         return {}
     nodes = "".join(f'<node id="{ref}" type="{kind}"/>' for ref, kind in signs.types.items())
@@ -298,10 +292,7 @@ def followed(signs: MappedSigns, joints: Joints, links: Links, goals: Mapping[st
     signs are left out.
 
     Args:
-        signs: those of the map.
-        joints: its roads.
         links: the network's connections.
-        goals: the junction at the end of each of its edges.
     """
     edges: dict[str, str] = {}
     for approach, (kind, nodes) in signs.approaches.items():
@@ -346,7 +337,6 @@ def dark(joints: Joints, links: Links, goals: Mapping[str, str]) -> Iterator[int
     between junctions, as at crossings on foot, which netconvert discards. Those within a junction are part of it.
 
     Args:
-        joints: the roads.
         links: the network's connections.
         goals: the junction at the end of each of its edges.
     """

@@ -91,7 +91,6 @@ class _RoadGraph:
                 self._at.setdefault(ref, []).append(index)
 
     def pieces_of(self, way: int) -> Sequence[int]:
-        """The pieces of a way."""
         return self._of_way.get(way, ())
 
     def at(self, way: int, node: int) -> list[int]:
@@ -99,7 +98,6 @@ class _RoadGraph:
         return [index for index in self.pieces_of(way) if node in self._pieces[index].nodes]
 
     def nodes(self, way: int) -> set[int]:
-        """The nodes of a way."""
         return {ref for index in self.pieces_of(way) for ref in self._pieces[index].nodes}
 
     def arriving(self, node: int) -> Iterator[int]:
@@ -125,9 +123,7 @@ def read_turns(restrictions: Iterable[Relation], pieces: Sequence[Piece], may: S
     """The bans for cars that the restrictions of a map state.
 
     Args:
-        restrictions: the relations.
         pieces: the roads, cut at barriers.
-        may: the directions open on each.
     """
     network, turns = _RoadGraph(pieces, may), BannedTurns()
     for relation in restrictions:

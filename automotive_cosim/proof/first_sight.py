@@ -163,8 +163,6 @@ def undeclared(
 
     Args:
         differs: the declared kinds of difference.
-        one: first observation of a half, with its moment.
-        other: that of the other half.
     """
     free = frozenset[Facet]().union(*(FREED[kind] for kind in differs))
     seen, as_well = (dict(_facts(*each)) for each in (one, other))

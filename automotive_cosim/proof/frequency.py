@@ -112,7 +112,6 @@ def measure(
     Args:
         tasks: ids of the catalogue, or anything else that ``run.plan.choose`` accepts.
         seeds: the seeds.
-        path: the record.
         suite: the suite that the tasks are chosen from, or ``all``.
     """
     record = dict(read(path))

@@ -48,7 +48,6 @@ class Played:
 
     @property
     def actions(self) -> tuple[Action | None, ...]:
-        """The actions, in order."""
         return tuple(step.action for step in self.steps[1:])
 
     @property
@@ -69,7 +68,6 @@ class Played:
 
     @property
     def success(self) -> bool:
-        """Whether it succeeded."""
         return self.verdict.success
 
     @property
@@ -93,7 +91,6 @@ class Script:
     _next: int = 0
 
     def act(self, observation: Observation) -> Action:
-        """The next action."""
         action = self.actions[min(self._next, len(self.actions) - 1)]
         self._next += 1
         return action
@@ -125,8 +122,6 @@ class Ground:
         """Drives up to the hand-over, in the task's own scenario or another.
 
         Args:
-            task: the task.
-            half_name: which half.
             seed: determines traffic, drive, phrasing and parameters.
             simulations: warm traffic.
             scenario: used instead of the task's own.

@@ -155,7 +155,6 @@ class Prover:
         )
 
     def close(self) -> None:
-        """Closes its own simulations."""
         if self._owns_simulations:
             self._simulations.close()
 

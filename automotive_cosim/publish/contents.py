@@ -68,7 +68,6 @@ def counts(found: Coverage, successes: int) -> BundleCounts:
 
     Args:
         found: how much of its plan has been run.
-        successes: the number of successes.
     """
     return BundleCounts(found.planned, found.judged, successes, found.errors, len(found.not_run))
 

@@ -28,8 +28,6 @@ def drive_problems(folder: Path, row: DriveTrialRow, told: Json) -> Iterator[Pro
 
     Args:
         folder: an evaluation's or an unpacked bundle's.
-        row: its row.
-        told: the same as JSON.
     """
     *steps, last = read_trace(folder, row.id)
     file = trace_file(folder, row.id).relative_to(folder).as_posix()

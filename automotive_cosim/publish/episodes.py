@@ -76,7 +76,6 @@ def check_trial(folder: Path, job: TrialSetup, row: TrialRow) -> tuple[Problem, 
     Args:
         folder: an evaluation's or an unpacked bundle's.
         job: the trial in the plan.
-        row: its row.
     """
     try:
         if large := _too_large(folder, job):

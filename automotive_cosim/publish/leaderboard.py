@@ -143,9 +143,6 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
     """Checks every bundle and writes the page.
 
     Args:
-        folder: of bundles.
-        out: file to write.
-        workers: processes that check.
         mixed: put evaluations of several versions of the suite into one table, and say so.
 
     Returns:

@@ -42,11 +42,9 @@ def differences(
     """A problem for each named field that differs.
 
     Args:
-        file: path of the file.
         where: place of the object in it.
         found: the object, as JSON.
         expected: what it should be, as JSON.
-        names: the fields to compare.
         source: where the expected values come from.
     """
     for name in names:

@@ -108,7 +108,6 @@ def provider_body(form: str, text: str) -> Json:
     """An answer as the provider of a format sends it.
 
     Args:
-        form: name of the format.
         text: the answer as the agent reads it.
     """
     api = FORMATS[form].api

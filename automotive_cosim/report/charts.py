@@ -100,7 +100,6 @@ def charted(
     """The plots that have something to show, by name.
 
     Args:
-        made: title and drawing of each.
         narrow: drawings of those that have another one for a narrow page.
 
     Raises:
@@ -276,7 +275,7 @@ def _write_plainly(figure: Figure) -> None:
     from matplotlib.axis import Axis
     from matplotlib.ticker import Formatter, LogFormatter, ScalarFormatter
 
-    class WrittenOut(Formatter):
+    class _WrittenOut(Formatter):
         """Shows what another formatter does; large numbers, and those of a logarithmic axis, in other digits."""
 
         def __init__(self, before: LogFormatter | ScalarFormatter) -> None:
@@ -301,7 +300,7 @@ def _write_plainly(figure: Figure) -> None:
             (axis.get_minor_formatter(), axis.set_minor_formatter),
         ):
             if isinstance(before, LogFormatter | ScalarFormatter):
-                replace(WrittenOut(before))
+                replace(_WrittenOut(before))
 
 
 def drawn(name: str, drawing: Drawing, width_in: float) -> str:

@@ -24,7 +24,6 @@ def contact_sheet(cockpit: Cockpit, width: int = 400) -> Image.Image:
     """The sheet, six screens per row, each by day and next to it by night.
 
     Args:
-        cockpit: is not changed.
         width: of each screen in pixels.
     """
     return sheet(tuple(pictures(cockpit)), COLUMNS, width)
@@ -34,7 +33,6 @@ def sheet(tiles: Sequence[SheetTile], columns: int, width: int = 400) -> Image.I
     """Screens with a caption above each, row by row.
 
     Args:
-        tiles: captions and screens.
         columns: tiles per row.
         width: of each screen in pixels.
     """

@@ -65,9 +65,7 @@ def timeline_chart(row: DriveTrialRow, timeline: Json, title: str = "") -> Chart
     """The timeline.
 
     Args:
-        row: the drive.
         timeline: its file, see ``drives.timeline``.
-        title: of the plot.
 
     Raises:
         SetupError: matplotlib is not installed.

@@ -49,7 +49,6 @@ class FailureClass(StrEnum):
 
     @property
     def words(self) -> str:
-        """Its name in words."""
         return self.replace("_", " ").capitalize()
 
     @property
@@ -88,7 +87,6 @@ def failure_class(row: EpisodeRow, lines: Sequence[Json]) -> FailureClass:
     """The class of an episode that was judged and not solved.
 
     Args:
-        row: the episode's.
         lines: its trace, from ``read_trace``.
     """
     try:

@@ -8,7 +8,7 @@ from itertools import chain, pairwise
 from PIL import Image, ImageDraw
 
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Weight, font
-from automotive_cosim.report.speedaxis import SpeedAxis
+from automotive_cosim.report.plot import SpeedAxis
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
 

@@ -101,8 +101,6 @@ class RoadPainter:
         """Draws the road around the last sample.
 
         Args:
-            canvas: the frame.
-            area: where to draw on it.
             past: the drive so far, oldest first; the trail is red where it was above the limit.
             avoid: boxes without street names.
         """
@@ -127,8 +125,6 @@ class RoadPainter:
         """Draws the road with the drive going to the right, and on it several cars that set out as one.
 
         Args:
-            canvas: the frame.
-            area: where to draw on it.
             cars: where each is, by its colour; the first is the recorded one, among whose traffic all are shown.
         """
         here = next(iter(cars.values()))
@@ -278,7 +274,6 @@ class _Pen:
         self.brush.line((x, y - 0.4 * size, x, y + 0.2 * size), NIGHT.background, max(1, round(2.5 * self.unit)))
 
     def dot(self, vehicle: SeenVehicle) -> None:
-        """A vehicle as a dot."""
         is_ego = vehicle.vehicle_id == EGO
         x, y = self.view.pixel(vehicle.x_m, vehicle.y_m)
         r = (4.0 if is_ego else 2.4) * self.unit

@@ -12,10 +12,10 @@ from PIL import Image
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import FILM, PAGE, screenshot
 from automotive_cosim.formats.writing import write_whole
-from automotive_cosim.report.playback import open_picture
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.attribution import path_of, read_effects
@@ -93,3 +93,19 @@ def _picture(path: Path) -> str:
 def embedded(data: bytes, kind: str = "webp") -> str:
     """A picture as a data URL."""
     return f"data:image/{kind};base64," + base64.b64encode(data).decode()
+
+
+def open_picture(path: Path) -> Image.Image:
+    """A picture whose pixels are not read yet.
+
+    Raises:
+        UserError: it cannot be read, or says that it has more than ``bounds.PIXELS``.
+    """
+    try:
+        picture = Image.open(path if path.is_file() else "")
+    except (OSError, Image.DecompressionBombError) as error:
+        raise UserError(f"{path} is no picture that can be read; record the trial again") from error
+    if picture.width * picture.height > bounds.PIXELS:
+        picture.close()
+        raise UserError(f"{path} has over {bounds.PIXELS:,} pixels; a screen has not")
+    return picture

@@ -72,7 +72,6 @@ class PairSide:
 
     @property
     def row(self) -> EpisodeRow:
-        """What came of it."""
         return self._came[0]
 
     @property
@@ -96,7 +95,6 @@ def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
     """Writes the film and the page into a folder that contains both records; returns the page.
 
     Args:
-        folder: where they go.
         sides: the two, left and right.
     """
     frames = [_from_hand_over(side) for side in sides]

@@ -3,11 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import groupby
 
-from automotive_cosim.report.speedaxis import SpeedAxis
+from automotive_cosim.geo.text import KM_PER_MILE
 from automotive_cosim.run.timeline import Sample, TimelineEntry
 from automotive_cosim.run.words import is_over
+
+MOST_LINES = 7
+STEPS = (10, 20, 40, 80)
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedAxis:
+    """From zero to above everything that the drive and its limits reach."""
+
+    unit: str
+    """``"km/h"`` or ``"mph"``, as where the drive ends."""
+    top_kmh: float
+    lines: tuple[tuple[int, float], ...]
+    """Grid lines: the figure in the unit, and the speed in km/h."""
+
+    @classmethod
+    def of(cls, path: Sequence[Sample]) -> SpeedAxis:
+        """The axis for a drive of at least one sample."""
+        unit = path[-1].speed_unit
+        kmh_per_unit = KM_PER_MILE if unit == "mph" else 1.0
+        most = max(max(sample.speed_kmh, sample.limit_kmh or 0.0) for sample in path) / kmh_per_unit
+        tens = 20 if unit == "km/h" else 10
+        top = tens * (int(most // tens) + 1)
+        step = next((step for step in STEPS if step >= tens and top / step < MOST_LINES), STEPS[-1])
+        figures = range(0, top + 1, step)
+        return cls(unit, top * kmh_per_unit, tuple((figure, figure * kmh_per_unit) for figure in figures))
+
 
 LEFT, RIGHT, TOP, BOTTOM = 44, 14, 34, 40
 MARKED = {"alert": "alert", "limit": "at the limit", "declared": "declared"}
@@ -29,11 +57,9 @@ class Plot:
         self.speeds = SpeedAxis.of(self._path)
 
     def x(self, at_s: float) -> float:
-        """x of a time."""
         return round(self.left + (at_s - self._begin) / (self._end - self._begin) * (self.right - self.left), 1)
 
     def y(self, speed_kmh: float) -> float:
-        """y of a speed."""
         return round(self.bottom - speed_kmh / self.speeds.top_kmh * (self.bottom - self.top), 1)
 
     @property

@@ -114,7 +114,6 @@ class Results:
         return tuple(sorted({row.task for row in given}))
 
     def of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
-        """The episodes of one contestant."""
         return tuple(row for row in self.rows if contestant(row) == each)
 
     def planned_of(self, each: Contestant) -> tuple[EpisodeRow, ...]:

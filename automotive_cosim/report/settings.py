@@ -1,4 +1,4 @@
-"""What the commands on results and screens can be told. Each field is an option of its command."""
+"""What ``compare`` can be told. Each field is an option."""
 
 from __future__ import annotations
 
@@ -28,29 +28,3 @@ class CompareSettings:
     def allowed(self) -> float:
         """The threshold as a share."""
         return self.threshold / 100
-
-
-@dataclass(frozen=True, slots=True)
-class PlaybackSettings:
-    """How a record is shown again, instead of being run again."""
-
-    play: bool = False
-    """Print the recorded steps at their pace instead; of `run` alone."""
-    film: Path | None = None
-    """Write the recorded screens as an animation instead, .webp or .gif; of `run` alone."""
-    speed: Annotated[float, Ge(0.1), Le(1000)] = 4.0
-    """How many times as fast as recorded --play and --film are."""
-
-
-@dataclass(frozen=True, slots=True)
-class ScreensSettings:
-    """Which screens are drawn, and where to."""
-
-    out: Path = Path("runs/screens.webp")
-    """Picture to write: .webp, .png or .jpg."""
-    scenario: str = "paris_centre"
-    """Scenario in which the car drives."""
-    language: str = "en"
-    """Language of the screens: en, fr, de or ja."""
-    screen: str = "1280x720"
-    """Size of the screen: 1280x720, 1920x720 or 1080x1920."""

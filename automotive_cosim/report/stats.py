@@ -149,7 +149,6 @@ def rate(
     Args:
         outcomes: (cluster, success) of each episode that has run; success None is an error.
         not_run: number of further planned episodes.
-        confidence: of the interval.
     """
     clusters: dict[Hashable, list[bool]] = defaultdict(list)
     errors = 0
@@ -209,7 +208,6 @@ def compare(
         first: success by instance.
         second: success by instance of the other agent.
         clusters: the cluster, e.g. the task, of each instance.
-        seed: of the bootstrap.
     """
     shared = [instance for instance in first if instance in second]
     if not shared:
@@ -247,7 +245,6 @@ def clustered_mean(values: Iterable[tuple[Hashable, float]], seed: int = 0) -> M
 
     Args:
         values: (cluster, value) of each episode.
-        seed: of the bootstrap.
     """
     sums: dict[Hashable, list[float]] = defaultdict(lambda: [0.0, 0.0])
     for cluster, value in values:

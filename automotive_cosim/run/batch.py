@@ -73,7 +73,7 @@ class Progress(Generic[R]):
     """Why the rest is not run; empty if it is run or nothing is left."""
 
 
-class BatchPlan(Protocol):
+class _BatchPlan(Protocol):
     """What a batch runs; ``check`` raises a UserError for what does not exist or is out of range."""
 
     def check(self) -> object: ...
@@ -83,7 +83,7 @@ class BatchPlan(Protocol):
     def jobs(self) -> Sequence[Any]: ...
 
 
-P = TypeVar("P", bound=BatchPlan)
+P = TypeVar("P", bound=_BatchPlan)
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +141,6 @@ def run_plan(
     """Runs the remaining trials of a plan and retries those that ended in an error.
 
     Args:
-        plan: what to run.
         folder: results folder, new or to be resumed.
         executor: where to run it; the results do not depend on it.
         retries: how many times a trial is retried after an infrastructure error before the error is recorded.
@@ -174,10 +173,8 @@ def run_jobs(
     """Runs the jobs that have no row yet, or the row of an error.
 
     Args:
-        jobs: what to run.
         store: where the rows are read and written.
         opener: makes the runner of each worker.
-        executor: where to run them.
         retries: how many times a job is retried after an error before its row is written.
         limit: the meter of its budget, if it has one. Once it is spent, the rest is not run.
         budget: what the meter counts against, to tell what is left of it.

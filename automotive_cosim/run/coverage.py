@@ -57,7 +57,6 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
     """Compares an evaluation's rows with its plan, expanded by the installed catalogue.
 
     Args:
-        manifest: the evaluation's.
         rows: its rows by id.
     """
     judged = sum(row.outcome is not None for row in rows.values())

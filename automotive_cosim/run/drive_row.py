@@ -49,7 +49,6 @@ class DriveTrialRow(TrialRow):
 
     @property
     def subject(self) -> str:
-        """The family."""
         return self.family
 
     @property

@@ -139,6 +139,8 @@ def judged_without(forks: Forks, left: Sequence[ForkedAct], draws: Collection[in
     for draw in draws:
         mine, others = forks.both(left, draw)
         found.append((_watched(forks, fork, mine, session.acts), _watched(forks, fork, others, kept)))
+        if found[0][0][0] == found[0][1][0]:  # whatever further draws are worth
+            return 0.0, ""
     gains = [one[0] - other[0] for one, other in found]
     worth = score(session.judgement, session.seconds).worth or LEAST_WORTH
     points = round(100 * median(gains) / (2 * worth), 1)
@@ -184,8 +186,10 @@ def _verdict(forks: Forks, left: Sequence[ForkedAct], draws: Collection[int]) ->
     for draw in draws:
         mine, others = forks.both(left, draw)
         found.append((_parts(forks, mine, frozenset()), _parts(forks, others, steps)))
-    is_other = [all(one.values()) is not all(other.values()) for one, other in found]
-    if not is_other[0] or 2 * sum(is_other) <= len(is_other):
+        is_other = [all(one.values()) is not all(other.values()) for one, other in found]
+        if not is_other[0]:  # whatever further draws say
+            return ""
+    if 2 * sum(is_other) <= len(is_other):
         return ""
     one, other = found[0]
     parts = ", ".join(part.replace("_", " ") for part in PARTS if one[part] != other[part])

@@ -26,7 +26,6 @@ class PartsHeld:
 
     @classmethod
     def of(cls, verdict: Verdict) -> PartsHeld:
-        """The parts that held in a verdict."""
         return cls(**{name: part.ok for name, part in verdict.parts.items()})
 
     @property
@@ -99,7 +98,6 @@ class EpisodeRow(TrialRow):
 
     @property
     def subject(self) -> str:
-        """The task."""
         return self.task
 
     @property

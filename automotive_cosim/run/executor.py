@@ -162,7 +162,6 @@ class Executor(Protocol):
 
         Args:
             budget: what the evaluation may spend.
-            before: what it has spent already.
         """
         ...
 

@@ -108,8 +108,6 @@ def forecast(jobs: Sequence[TrialSetup], workers: int, rows: Iterable[TrialRow] 
     """What the jobs that have not run yet will take.
 
     Args:
-        jobs: those of the plan.
-        workers: how many run at the same time.
         rows: the trials in the plan's folder so far.
     """
     judged = [row for row in rows if row.error is None]

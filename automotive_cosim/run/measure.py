@@ -79,7 +79,6 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
 
     Args:
         scenario: a name or a folder.
-        steps: SUMO steps to measure.
         say: called with what is being measured.
 
     Raises:
@@ -146,10 +145,15 @@ def _memory(scenario: str) -> tuple[float, float]:
             env.reset(seed=0)
             for _ in range(SECONDS):
                 env.step(SECOND)
-            read_mb.append(sum(map(_pss_kb, tree(os.getpid()))) / 1024)
+            read_mb.append(pss_mb())
         for env in envs:
             env.close()
     return round(read_mb[0], 1), round((read_mb[-1] - read_mb[0]) / EXTRA_ENVS, 1)
+
+
+def pss_mb() -> float:
+    """Megabytes of this process and all below it, with the pages that several share counted once."""
+    return sum(map(_pss_kb, tree(os.getpid()))) / 1024
 
 
 def _pss_kb(pid: int) -> int:

@@ -56,8 +56,6 @@ def misfit(model: ChatModel, tokens: int, picture: bytes | None, *, calls: bool 
     A model in this process is not asked, since it knows its context.
 
     Args:
-        model: the model.
-        tokens: of the longest question.
         picture: a PNG file as big as a screenshot, if the questions have pictures.
         calls: whether the questions after the first have calls with their results.
 

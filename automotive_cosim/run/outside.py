@@ -78,13 +78,10 @@ class OutsideAgent:
         """Starts nothing before its channels are asked for.
 
         Args:
-            fork_server: where its process is started.
             name: for ``agents.make_agent``.
-            model: the same, for an agent with a model.
             settings: for an agent with a model or behind an address; others get none.
             chat_model: answers instead of that model.
             step_s: limit of the wall time that its process may take for one step.
-            episode_s: the same for the whole episode.
         """
         self.name = name
         self.answer_s = 0.0

@@ -41,7 +41,6 @@ class JobQueue(Generic[J]):
             self.put(job)
 
     def put(self, job: J) -> None:
-        """Adds a job."""
         self._groups.setdefault(job.simulation, {}).setdefault(job.kind, deque()).append((next(self._numbers), job))
         self._left[job.simulation] += 1
 

@@ -101,7 +101,6 @@ class Recorder(TrialObserver):
         """Nothing is written before the agent takes over.
 
         Args:
-            trial: what is run.
             folder: the trial's, which may not exist yet; None keeps no folder.
             arguments: the command's, of a trial that it runs alone; None in an evaluation, whose manifest has what
                 is the same for all its trials.

@@ -131,7 +131,6 @@ def _again(folder: Path, row: EpisodeRow, held: PartsHeld) -> tuple[bool, tuple[
 
 
 def _drive_again(folder: Path, row: DriveTrialRow, held: Score) -> tuple[bool, tuple[Change, ...]]:
-    """The same of a drive."""
     events, acts, score = read_judged(folder, row.id, JudgedDrive).judgement()
     now = replace(row, events=events, acts=acts, score=score, value=score.value)
     changes = tuple(

@@ -133,7 +133,6 @@ def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
 
 
 def _single(folder: Path, trial: str) -> Recorded:
-    """The same for the folder of a trial."""
     if trial:
         raise UserError(f"{folder} holds a single trial; omit {trial!r}")
     told, stored = read_trial(folder), read_steps(folder)
@@ -143,7 +142,6 @@ def _single(folder: Path, trial: str) -> Recorded:
 
 
 def _job(folder: Path, told: Json) -> TrialSetup:
-    """What was run, by the folder of a trial."""
     values = (told.get("manifest") or {}).get("setup")
     if values is None:
         raise UserError(f"{folder} does not say what was run; record the trial again")
@@ -184,7 +182,6 @@ def played(
     """Plays the actions of a stored trial in the same setup; its row, and what an evaluation would keep of it.
 
     Args:
-        job: the trial.
         stored: the steps of its trace.
         channels: those of its agent, on which the answers to queries depend.
         failure: how the agent's side failed after them, if it did.

@@ -183,7 +183,7 @@ def roads_in(folder: Path) -> dict[str, Path]:
         return {"": folder / ROAD}
     found = {path.parent.name: path for path in sorted(folder.glob(f"{PICTURES}/**/{ROAD}"))}
     if not found:
-        raise UserError(f"{folder} has no {ROAD}; `run`, `drive --out` and `eval --pictures all` record the road")
+        raise UserError(f"{folder} has no {ROAD}; `run` and `eval --pictures all` record the road")
     return found
 
 

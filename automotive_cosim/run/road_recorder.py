@@ -129,7 +129,6 @@ class RoadWriter:
         """Begins the file.
 
         Args:
-            path: where it goes.
             traffic: the drive on the road to be written.
             about: what is run, by name.
             begin_s: simulation time from which the file counts.

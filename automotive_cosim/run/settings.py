@@ -1,5 +1,5 @@
 """What can be set about an evaluation. Each field is a value of ``plan.toml`` and an option of ``eval``. And about
-``run`` and ``bench``."""
+``run``."""
 
 from __future__ import annotations
 
@@ -70,8 +70,14 @@ PICTURED = 50
 
 @dataclass(frozen=True, slots=True)
 class RunSettings:
-    """How a plan is run; whatever it is, the same rows come out."""
+    """Which plan is evaluated, how and where to; however it is run, the same rows come out."""
 
+    plan: Path | None = None
+    """TOML file with the plan; options override it."""
+    out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
+    """Results folder; an existing one is resumed."""
+    dry_run: bool = False
+    """Show the plan and exit."""
     retries: Annotated[int, Ge(0), Le(100)] = 2
     """Further attempts after an infrastructure error."""
     pictures: Annotated[
@@ -104,43 +110,22 @@ class Budget:
 
     @property
     def is_limited(self) -> bool:
-        """Whether there is a limit."""
         return self.tokens is not None or self.usd is not None
 
 
 @dataclass(frozen=True, slots=True)
-class PlanSettings:
-    """Which plan is evaluated, and where to."""
-
-    plan: Path | None = None
-    """TOML file with the plan; options override it."""
-    out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
-    """Results folder; an existing one is resumed."""
-    dry_run: bool = False
-    """Show the plan and exit."""
-
-
-@dataclass(frozen=True, slots=True)
 class SingleSettings:
-    """How one episode is run, and where to."""
+    """How one trial is run, and where to."""
 
+    drive: Annotated[str, Option(form="FAMILY")] = ""
+    """Run this drive of ten to thirty minutes instead of a task; `show drives` lists them."""
     without: tuple[str, ...] = ()
     """Parts of the agent to switch off, separated by commas: gps, context, queries, screen, reflection, memory."""
     memory: Path | None = None
     """File in which ASURADA remembers what worked, for later runs."""
-    out: Annotated[Path | None, Option(default="runs/<time>-<task>-<half>-<agent>-seed<seed>")] = None
+    out: Annotated[Path | None, Option(default="runs/<time>-<task or drive>-<agent>-seed<seed>")] = None
     """Folder for the results."""
     pair: bool = False
     """Run the agent twice from the same instant, with its place and without, side by side."""
     actions: Path | None = None
     """Play a file of actions, one JSON object per line, instead of an agent."""
-
-
-@dataclass(frozen=True, slots=True)
-class BenchSettings:
-    """What ``bench`` measures."""
-
-    scenario: str = "paris_centre"
-    """A scenario's name or folder, any .sumocfg or .net.xml(.gz)."""
-    steps: Annotated[int, Ge(100), Le(10**6)] = 2000
-    """SUMO steps to measure after the warm-up."""

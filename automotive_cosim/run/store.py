@@ -10,12 +10,15 @@ lock              held while an evaluation writes here
 from __future__ import annotations
 
 import gzip
+import hashlib
 import json
 import platform
 import subprocess
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime
+from importlib.machinery import PathFinder
 from io import FileIO
 from pathlib import Path
 from typing import Generic, cast
@@ -26,9 +29,63 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
 from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.formats.writing import add_line, growing, locked, make_folder, write_whole
-from automotive_cosim.run.own_code import own_code, own_scenarios
 from automotive_cosim.run.row import R, as_json, from_line
 from automotive_cosim.run.versions import STAMPED, SUITE, installed
+from automotive_cosim.scenarios.opening import own_files
+
+
+def own_code(agents: Iterable[str]) -> dict[str, str]:
+    """The hash of the code of each ``package.module:Class`` among the names of agents.
+
+    It covers the module's file, or all modules of its top-level package, and not what these import from elsewhere.
+    Agents behind an address and those that are not found have none.
+    """
+    found: dict[str, str] = {}
+    for name in agents:
+        module, colon, made = name.partition(":")
+        files = _files(module.partition(".")[0]) if colon and made.isidentifier() else []
+        if files:
+            found[name] = _sha256(files)
+    return found
+
+
+def own_scenarios(plan: Json) -> dict[str, dict[str, str]]:
+    """The hashes of the files of each scenario of one's own that a plan names, by name of the file.
+
+    Args:
+        plan: with one ``scenario`` or several ``scenarios``. Those that cannot be read have none.
+    """
+    found: dict[str, dict[str, str]] = {}
+    for name in (plan.get("scenario"), *(plan.get("scenarios") or ())):
+        with suppress(UserError, OSError):
+            named: dict[str, list[Path]] = {}
+            for file in own_files(name) if name else ():
+                named.setdefault(file.name, []).append(file)
+            if named:
+                found[str(name)] = {file: _sha256(paths) for file, paths in named.items()}
+    return found
+
+
+def _files(module: str) -> list[Path]:
+    """The files of a top-level module, looked for as an import would, from the working folder on."""
+    try:
+        spec = PathFinder.find_spec(module, [str(Path.cwd()), *sys.path])
+    except (ImportError, ValueError):
+        return []
+    if spec is None:
+        return []
+    if spec.submodule_search_locations is not None:
+        return sorted(path for folder in spec.submodule_search_locations for path in Path(folder).rglob("*.py"))
+    return [Path(spec.origin)] if spec.origin is not None and Path(spec.origin).is_file() else []
+
+
+def _sha256(files: Iterable[Path]) -> str:
+    hashed = hashlib.sha256()
+    for path in files:
+        with path.open("rb") as file:
+            hashed.update(hashlib.file_digest(file, "sha256").digest())
+    return hashed.hexdigest()
+
 
 FORMAT = 1
 """Format of the folder; any other is refused."""
@@ -73,9 +130,7 @@ def opened(
     """Creates or resumes an evaluation's folder, and locks it until it is closed.
 
     Args:
-        folder: its path.
         plan: the plan; a folder that was started with a different one is refused.
-        kind: kind of its rows.
         parts: folders in it.
         planned: how many jobs the plan has, for the manifest.
         grows: the plan may differ from the earlier one, for runs that are not known in advance; see ``replan``.
@@ -221,7 +276,6 @@ def keep_files(folder: Path, files: Mapping[str, bytes]) -> None:
     """Writes an episode's files from another node, each completely or not at all.
 
     Args:
-        folder: the evaluation's.
         files: contents by path below it, with ``/`` between its parts.
 
     Raises:

@@ -125,7 +125,6 @@ class Pace:
 
         Args:
             waiting: how many jobs wait, by simulation and kind.
-            running: the jobs that workers are running.
             idle: the warm simulation of each other worker, including those yet to be started.
         """
         if not self._knows(waiting, running, {*idle, *(turn.job.simulation for turn in running)}):

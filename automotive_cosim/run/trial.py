@@ -330,7 +330,6 @@ def run_trial(
 
     Args:
         trial: what to run; its ``agent`` and ``model`` are only written into the row.
-        agent: the agent that acts.
         observers: notified of everything as it happens.
         simulations: warm simulations to use; by default its own, closed with the trial.
         wall_s: wall seconds from the hand-over or departure after which it is cut off.

@@ -29,10 +29,15 @@ WARM = 2
 
 
 @contextmanager
-def trials(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[TrialSetup, TrialRow]]:
-    """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share."""
-    with closing(Simulations(count_limit=WARM)) as simulations, closing(ForkServer()) as fork_server:
-        yield lambda job, folder: run_job(job, folder, pictures, simulations, fork_server, meter)
+def trials(
+    pictures: Pictures, meter: MeterHandle | None = None, simulations: Simulations | None = None
+) -> Iterator[Runner[TrialSetup, TrialRow]]:
+    """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share, and warm simulations are its
+    own unless given."""
+    with ExitStack() as ends:
+        fork_server = ends.enter_context(closing(ForkServer()))
+        warm = simulations or ends.enter_context(closing(Simulations(count_limit=WARM)))
+        yield lambda job, folder: run_job(job, folder, pictures, warm, fork_server, meter)
 
 
 def run_job(
@@ -62,10 +67,7 @@ def run_with(
     """Runs one trial, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
     Args:
-        agent: who acts.
-        job: what to run.
         folder: the evaluation's.
-        pictures: whether to keep screenshots and road.
         simulations: warm simulations to use.
         observers: notified before anything is kept.
 
@@ -110,10 +112,7 @@ def agent_for(
 
     Args:
         name: as in ``make_agent``, like the model.
-        model: its model.
         settings: what it is given, and the seed of an agent that draws.
-        limits: of its process and its tokens.
-        fork_server: starts its process.
         meter: what it shares with the evaluation's other workers.
 
     Raises:

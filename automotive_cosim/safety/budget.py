@@ -53,7 +53,6 @@ class SearchBudget:
 
     @property
     def most_points(self) -> int:
-        """The points, or as many as any search would have."""
         return MOST_POINTS if self.points is None else self.points
 
 
@@ -61,8 +60,6 @@ def progress_in_words(budget: SearchBudget, points: int, used_s: float, each_s: 
     """How far a search is, by each limit of its budget, and the time left by the one that is reached first.
 
     Args:
-        budget: what it may use.
-        points: that were sampled.
         used_s: wall time so far, with earlier starts.
         each_s: wall time of a run; 0 while unknown.
     """

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from itertools import product
 from pathlib import Path
-
-import numpy as np
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.cosim.simulation import TICK_S
@@ -34,14 +32,16 @@ TIMES_S = (STAGE_S, 30.0, 90.0, 120.0, 150.0)
 comes in time at another."""
 WHAT = ("drive", "scenario", "stage")
 """The factors that decide whether something can come about at all."""
-TRIES, MOST_KINDS = 5, 16
-"""Drives after which something is said not to come about, and how many such combinations are tried."""
-STEPS = (0.4, 0.8, 0.2)
-"""By how much of their ranges instant and seed are moved where nothing comes due."""
+MOST_KINDS = 16
+"""How many of their combinations are tried before the start."""
+MOVES: tuple[tuple[str, ...], ...] = (("stage_s",), ("stage_s",), ("stage_s", "seed"))
+STEP = 0.4
+"""What is moved, one after the other, where nothing comes due, and by how much of its range; the traffic of another
+seed must be warmed up first."""
 MENDS: tuple[tuple[str, FactorValue], ...] = (
-    ("ahead_m", 300.0), ("ahead_m", 800.0), ("driver", "hurried"), ("density", 2.0), ("minutes", 12.0),
+    ("ahead_m", 300.0), ("ahead_m", 800.0), ("driver", "hurried"), ("minutes", 12.0),
 )  # fmt: skip
-"""What is tried, one by one, where nothing comes due."""
+"""What is tried, one by one, where nothing comes due even so."""
 
 
 def why_not(spec: DriveSpec, kinds: Collection[str], simulations: Simulations) -> str:
@@ -145,73 +145,53 @@ class DueScreen:
 
     def placed(self, point: SearchPoint) -> SearchPoint | None:
         """The point, or one with another instant and seed, at which something comes due; None if none was found."""
-        others = [
-            {**point, **{name: self.space.factor(name).at((self.space.factor(name).unit(point[name]) + step) % 1.0)
-                         for name in ("stage_s", "seed") if name in point}}
-            for step in STEPS
-        ]  # fmt: skip
-        return next(filter(self.is_due, [point, *others]), None)
+        return next(filter(self.is_due, self._near(point)), None)
 
-    def check(self, seed: int) -> Iterator[str]:
+    def check(self) -> Iterator[str]:
         """Tries what the space stages where, and says what cannot come about, and how to mend it.
 
-        The space's nominal point becomes one at which something is due, by another seed or time, if there is one.
-
-        Args:
-            seed: of the points at which it is tried.
+        The space's nominal point becomes one at which something is due, by place, time or seed, if there is one.
 
         Raises:
             UserError: nothing comes due anywhere.
         """
-        rng = np.random.default_rng(seed)
+        if not self.screens:
+            return
+        nominal = self.space.nominal
         several = [each for each in self.space.factors if each.name in WHAT and isinstance(each, FactorChoices)]
-        combined = list(product(*(each.values for each in several)))[:MOST_KINDS] if self.screens else []
         there: list[SearchPoint] = []
-        for values in combined:
+        for values in list(product(*(each.values for each in several)))[:MOST_KINDS]:
             fixed = dict(zip((each.name for each in several), values, strict=True))
-            points = [{**self.space.nominal, **fixed}]
-            points += [
-                {**self.space.at(rng.random(self.space.dimensions).tolist()), **fixed} for _ in range(TRIES - 1)
-            ]
-            due = next(filter(self.is_due, points), None)
-            if due is not None:
+            point = {**nominal, **fixed}
+            if (due := self.placed(point)) is not None:
                 there.append(due)
-            else:
-                yield f"{', '.join(map(str, values))}: {self._told(points)}; {self._mended(points)}"
-                self._never.append(fixed)
-        if combined and not there:
-            raise UserError(
-                "nothing comes due anywhere in this space, so that it says nothing about any agent; mend it"
+                continue
+            reasons = [self.why_not(near) for near in self._near(point)]
+            told = ", ".join(f"{reason} ({reasons.count(reason)})" for reason in dict.fromkeys(reasons))
+            mend = next((mend for mend in MENDS if self.is_due({**point, mend[0]: mend[1]})), None)
+            mended = (
+                f"nor with {', '.join(said(*each) for each in MENDS)}: leave it out"
+                if mend is None
+                else f"with {said(*mend)} it does: set that, or leave it out"
             )
-        if combined and not self.is_due(self.space.nominal):
-            near = next(filter(self.is_due, self._beside(there)), None)
-            if near is not None:
-                changed = ", ".join(
-                    said(name, near[name]) for name in near if near[name] != self.space.nominal[name]
-                )
-                self.space = nominal_at(self.space, near)
-                yield f"the nominal point has {changed}: as written, nothing is due there"
+            drives = counted(len(reasons), "drive")
+            yield f"{', '.join(map(str, values))}: nothing came due in {drives} without an agent: {told}; {mended}"
+            self._never.append(fixed)
+        if not there:
+            raise UserError("nothing comes due in this space, so that it says nothing about any agent; mend it")
+        changed = ", ".join(said(name, value) for name, value in there[0].items() if value != nominal[name])
+        if changed:
+            self.space = nominal_at(self.space, there[0])
+            yield f"the nominal point has {changed}: as written, nothing is due there"
 
-    def _told(self, points: Sequence[SearchPoint]) -> str:
-        reasons = [self.why_not(point) for point in points]
-        counts = {reason: reasons.count(reason) for reason in reasons}
-        parts = ", ".join(f"{reason} ({count})" for reason, count in counts.items())
-        return f"nothing came due in {counted(len(points), 'drive')} without an agent: {parts}"
-
-    def _mended(self, points: Sequence[SearchPoint]) -> str:
-        for name, value in MENDS:
-            if any(self.is_due({**point, name: value}) for point in points[:2]):
-                return f"with {said(name, value)} it does: set that, or leave it out"
-        return f"nor with {', '.join(said(*mend) for mend in MENDS)}: leave it out"
-
-    def _beside(self, there: Sequence[SearchPoint]) -> Iterator[SearchPoint]:
-        """The nominal point with the place, the seed and the instant of points at which something is due."""
-        for point in there[:TRIES]:
-            yield {
-                **self.space.nominal,
-                **{name: point[name] for name in (*WHAT, "seed", "stage_s") if name in point},
-            }
-        yield there[0]
+    def _near(self, point: SearchPoint) -> list[SearchPoint]:
+        """The point and those beside it, each once."""
+        near = [dict(point)]
+        for names in MOVES:
+            moved = [self.space.factor(name) for name in names if name in point]
+            last = near[-1]
+            near.append(last | {each.name: each.at((each.unit(last[each.name]) + STEP) % 1.0) for each in moved})
+        return [each for number, each in enumerate(near) if each not in near[:number]]
 
 
 def nominal_at(space: Space, point: SearchPoint) -> Space:

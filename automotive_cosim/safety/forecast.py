@@ -25,9 +25,7 @@ def search_forecast(space: Space, plan: Plan, points: int, workers: int = 1) -> 
     The points are others than the search's, drawn at random from the same space.
 
     Args:
-        space: what is searched.
         plan: the agent and its model.
-        points: how many are still to be sampled.
         workers: how many run in parallel; 1 for a search whose points depend on each other.
     """
     drawn = make_sampler("random", space, points, 0)

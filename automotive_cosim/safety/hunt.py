@@ -154,7 +154,6 @@ def hunt(
     """Searches a space.
 
     Args:
-        space: where.
         evaluate: runs a point.
         sampler: chooses the points.
         budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
@@ -308,7 +307,6 @@ def minimise(run: _Runner, first: Tried) -> MinimalFailure:
     Each step is one run; of its results the first that are no chance are taken, the smallest and the nearest.
 
     Args:
-        run: runs points.
         first: a failure that fails each time.
     """
     space = run.found.space

@@ -58,9 +58,6 @@ def suite(found: Hunt, agent: str, model: str, failures: list[MinimalFailure] | 
     """A plan with each minimal failure and its passing neighbour, for ``eval --plan`` and ``compare``.
 
     Args:
-        found: the search.
-        agent: that was searched.
-        model: its model.
         failures: those to write; None for all, with the failures that were not reduced.
     """
     lines = [f"agents = [{json.dumps(agent)}]", f"models = [{json.dumps(model)}]"]

@@ -66,7 +66,6 @@ class FactorChoices:
         return (self.values.index(value) + 0.5) / len(self.values)
 
     def level(self, value: FactorValue) -> str:
-        """A value in words."""
         return told(value)
 
     def distance(self, one: FactorValue, other: FactorValue) -> float:
@@ -183,11 +182,9 @@ class Space:
         return {each.name: each.at(unit) for each, unit in zip(self.factors, units, strict=True)}
 
     def units(self, point: SearchPoint) -> list[float]:
-        """Coordinates of a point."""
         return [each.unit(point[each.name]) for each in self.factors]
 
     def factor(self, name: str) -> Factor:
-        """The factor of that name."""
         return next(each for each in self.factors if each.name == name)
 
     def distance(self, one: SearchPoint, other: SearchPoint) -> float:

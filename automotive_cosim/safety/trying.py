@@ -28,6 +28,7 @@ from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.space import CONDITIONS, SETTINGS, FactorChoices, SearchPoint, Space
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.traffic.fork import Simulations
 
 
 def trial_of(point: SearchPoint, repeat: int = 0) -> PlannedTrial:
@@ -162,17 +163,18 @@ def trying(
     executor: Executor = Processes(),  # noqa: B008, frozen
     budget: SearchBudget = SearchBudget(),  # noqa: B008, frozen
     used_s: float = 0.0,
+    simulations: Simulations | None = None,
 ) -> Iterator[Trying]:
     """Opens a folder, new or to be resumed.
 
     Args:
-        space: what is searched.
         plan: the agent, its model and limits.
         folder: where the trials are kept.
         runner: runs a trial; None runs it with the agent of its name.
         executor: where trials run that do not depend on each other; it has been entered.
         budget: what may be used, with earlier starts.
         used_s: wall time of earlier starts.
+        simulations: warm traffic, shared with others; None for its own.
 
     Raises:
         UserError: it cannot be written, or holds something else.
@@ -182,5 +184,5 @@ def trying(
         meter = ends.enter_context(executor.metered(Budget(usd=budget.usd), spent_before(store)))
         began_s = time.monotonic()
         limit = SearchLimit(budget, meter, lambda: used_s + time.monotonic() - began_s)
-        own = runner or ends.enter_context(worker.trials(Pictures.NONE, meter))
+        own = runner or ends.enter_context(worker.trials(Pictures.NONE, meter, simulations))
         yield Trying(plan, store, own, space, limit, executor)

@@ -57,7 +57,6 @@ class ScenarioProof:
 
     @property
     def ok(self) -> bool:
-        """Whether all checks pass."""
         return all(item.ok for item in self.items)
 
     def as_json(self) -> Json:
@@ -82,7 +81,6 @@ def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, 
     """Checks everything that a scenario declares.
 
     Args:
-        scenario: the scenario to check.
         quick: whether to skip the hour of traffic.
         tell: called with the progress.
 

@@ -66,7 +66,6 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     the ego's routes are drawn.
 
     Args:
-        path: the file.
         to_be_moved: whether the network is moved to another place afterwards, so it need not have one.
 
     Raises:

@@ -39,7 +39,6 @@ def chosen_trips(network: Network, from_place: str, to_place: str) -> tuple[Trip
     """The route between two places; several drawn ones if only one place is given.
 
     Args:
-        network: the roads.
         from_place: an edge, a street or ``LON,LAT``; empty for any.
         to_place: an edge, a street or ``LON,LAT``; empty for any.
 
@@ -67,7 +66,6 @@ def drawn_trips(
     """Routes that are long for this network, from different edges to different edges.
 
     Args:
-        network: the roads.
         starts: edges to begin on; any if empty.
         goals: edges to end on; any if empty.
         seed: seed of the choice.

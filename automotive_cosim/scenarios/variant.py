@@ -122,8 +122,6 @@ def write_variant(
 
     Args:
         draft: of ``new_folder``.
-        scenario: what to copy.
-        configuration: its configuration.
         routes: name and text of the file of the new demand.
         record: name and content of a JSON file on how it was made.
         begin_s: when the simulation begins; None keeps it.
@@ -161,10 +159,8 @@ def _copied(configuration: Configuration, home: Path, draft: Path, folder: Path)
     """Copies the files of a configuration, but not its demand, and those that they name.
 
     Args:
-        configuration: of the scenario.
         home: the scenario's folder; a file in it has the same place in the copy.
         draft: the copy's folder.
-        folder: that of the copy's configuration.
 
     Returns:
         Option -> names as the copy's configuration has them, separated by commas.

@@ -19,9 +19,7 @@ def read_line(text: str, kinds: Mapping[str, type[Any]], place: str) -> Any:
     """What a line describes: a kind, and values of its fields; lists are separated by commas.
 
     Args:
-        text: the line.
         kinds: name of each kind -> the dataclass of its fields.
-        place: what it was given as, for errors.
 
     Raises:
         UserError: there is no such kind or field, or a value is not valid.

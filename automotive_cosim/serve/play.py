@@ -131,7 +131,6 @@ class Game(TrialObserver):
         """Begins an episode.
 
         Args:
-            task: id of the task.
             half: ``first``, ``second``, or empty to let the seed choose.
             seed: seed of the episode.
             name: code name of the person.
@@ -159,8 +158,6 @@ class Game(TrialObserver):
         """Begins a drive.
 
         Args:
-            family: of the drive.
-            seed: of the drive.
             name: code name of the person.
             practice: it may be paused and slowed, and does not count.
 
@@ -181,7 +178,6 @@ class Game(TrialObserver):
         """Begins a trial that counts.
 
         Args:
-            job: what to play.
             folder: the evaluation that it belongs to.
             keep: takes its row.
 
@@ -319,7 +315,7 @@ class Game(TrialObserver):
             self._tell(state=PlayState.FAILED, error=str(error) or type(error).__name__)
 
     def _practise(self, job: TrialSetup, folder: Path) -> None:
-        """Plays a trial and records it as ``run`` and ``drive`` do."""
+        """Plays a trial and records it as ``run`` does."""
         is_episode = isinstance(job, EpisodeSetup)
         recorder, road = Recorder(job, folder, {}, whole=is_episode), RoadRecorder(folder, job.about)
         everyone = (self, recorder, road, *([Film(folder)] if is_episode else []))  # the person first

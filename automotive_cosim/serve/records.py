@@ -90,7 +90,6 @@ class RecordFolders:
         """A file of a record.
 
         Args:
-            entry: the record.
             parts: names below its folder, of which none may lead elsewhere.
 
         Raises:
@@ -108,7 +107,6 @@ class RecordFolders:
         """The folder of a trial, all of whose files but its screenshots may be read.
 
         Args:
-            entry: the record.
             trial: id of the trial in an evaluation or a study; None for a recorded trial.
 
         Raises:
@@ -133,9 +131,7 @@ class RecordFolders:
         """The screenshot of a step that changed the screen, or its view through the windshield, a JPEG.
 
         Args:
-            entry: the record.
             folder: the trial's, from ``trial``.
-            step: number of the step.
             of: ``screenshot`` or ``road_view`` of ``formats.layout``.
 
         Raises:

@@ -110,7 +110,6 @@ class Site:
         """Reads the static files.
 
         Args:
-            folders: what to show.
             game: lets a person play; None if playing is off.
             study: deals episodes to several people; None if there is none.
 
@@ -267,7 +266,6 @@ class Site:
 
     @property
     def _own_game(self) -> Game:
-        """The owner's game."""
         if self._game is None:
             raise NotHereError("playing is off here; start `automotive-cosim serve --play`")
         return self._game
@@ -328,10 +326,8 @@ class WebServer(ThreadingHTTPServer):
         """Binds the address.
 
         Args:
-            folders: what to show.
             game: lets a person play; None if playing is off. The server closes it.
             study: deals episodes to several people. The server closes it.
-            host: address to listen on.
             port: port to listen on; 0 takes a free one.
 
         Raises:

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from annotated_types import Ge, Le
-
+from automotive_cosim.doors.settings import read_address
 from automotive_cosim.formats.annotations import Option
 
 
@@ -15,10 +14,10 @@ from automotive_cosim.formats.annotations import Option
 class ServeSettings:
     """Where the pages are, and what people may do there."""
 
-    host: str = "127.0.0.1"
-    """Address to listen on; by default, only this machine can connect."""
-    port: Annotated[int, Ge(0), Le(65535)] = 0
-    """Port to listen on; 0 picks a free one."""
+    http: Annotated[
+        tuple[str, int], Option(form="HOST:PORT", default="127.0.0.1 and a free port", read=read_address)
+    ] = ("127.0.0.1", 0)
+    """Address to listen at; by default, only this machine can connect."""
     play: bool = False
     """Let one person at a time operate the cockpit, judged as agents are."""
     study: Annotated[Path | None, Option(form="FILE")] = None

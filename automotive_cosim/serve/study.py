@@ -61,7 +61,6 @@ class PeopleStudy:
         """Starts or resumes it.
 
         Args:
-            plan: the plan to deal.
             folder: of the study, new or started with the same plan.
             simulations: warm simulations to use, which the caller closes; by default its own.
 
@@ -99,7 +98,6 @@ class PeopleStudy:
         """Takes the seat of a code name, and returns its secret.
 
         Args:
-            person: the code name.
             seat: an earlier secret, which keeps its seat.
 
         Raises:
@@ -197,7 +195,6 @@ class PeopleStudy:
             return [self._line(job, place) for order in self._orders.values() for place, job in enumerate(order, 1)]
 
     def as_csv(self) -> str:
-        """The same as CSV."""
         lines = self.export()
         return csv_text(lines[0], (line.values() for line in lines))
 

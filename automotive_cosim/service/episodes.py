@@ -103,7 +103,6 @@ class EpisodeService:
 
         Args:
             simulations: warm traffic, which the caller closes; by default its own.
-            limits: how many episodes, and for how long.
             clock: wall seconds, for the expiry.
         """
         self._own = Simulations(limits.episodes) if simulations is None else None

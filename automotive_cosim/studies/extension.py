@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import typer
 
 from automotive_cosim.run.extensions import ResultsKind
-from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
+from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, RerouteSettings
 
 HOME = "automotive_cosim.studies"
 
@@ -31,5 +31,6 @@ KINDS = {
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
     CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion"),
+    AdoptionSettings.kind: ResultsKind(f"{HOME}.adoption.page:write_adoption"),
     DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days"),
 }

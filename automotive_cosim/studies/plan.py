@@ -9,9 +9,9 @@ from functools import lru_cache
 from typing import Any, TypeVar
 
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.annotations import option
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.incidents import AnyIncident, Incident
-from automotive_cosim.formats.options import option
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.studies.settings import TrafficSettings

@@ -93,8 +93,6 @@ class RerouteSettings(DrivenSettings):
     """Shares of the other cars that reroute, 0 to 1; each is warmed up separately."""
     ages_s: Annotated[tuple[Annotated[float, Ge(0), Le(OLDEST_NEWS_S)], ...], MinLen(1)] = (0.0,)
     """Ages of the traffic news in seconds, by which the alternative route is selected."""
-    driver: Annotated[str, SCENARIOS_OWN] = ""
-    """Driver profile of the ego."""
     compliance: Annotated[tuple[CarShare, ...], MinLen(1)] = (1.0,)
     """Probabilities that the driver follows the advice, at the same decisions; most tables use only the first."""
     policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
@@ -114,8 +112,6 @@ class RerouteSettings(DrivenSettings):
     """Share of the vehicles present at a decision that must arrive before its futures end."""
     limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
     """Simulated seconds after which a future ends anyway."""
-    equilibrium_gap: float | None = None
-    """Declare that the demand comes from duaIterate with this relative gap."""
     half_width_s: Annotated[Annotated[float, Ge(0.1), Le(3_600)] | None, Option("until")] = None
     """Add seeds until the mean gain is known to within this many seconds."""
     whole_drives: bool = False
@@ -151,8 +147,26 @@ class CongestionSettings(DrivenSettings):
     warm-up."""
     share: Annotated[CarShare | None, SCENARIOS_OWN] = None
     """Share of the cars with SUMO's rerouting device."""
-    corridor: Annotated[str, Option(default="the first")] = ""
-    """Trip along which the time-space diagrams go."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdoptionSettings(DrivenSettings):
+    """What a study of an assistant's adoption sets."""
+
+    kind: ClassVar[str] = "adoption"
+    sets: ClassVar[tuple[str, ...]] = ("shares", "seeds")
+
+    agent: Annotated[str, MinLen(1)] = "worthwhile:1.2:60"
+    """The assistant: a rule for routes (never, always, delay:SECONDS, worthwhile:FACTOR:SECONDS), or an agent of
+    drives, as in rule-perfect, NAME/MODEL or package.module:Class."""
+    shares: Annotated[tuple[Annotated[float, Ge(0), Le(100)], ...], MinLen(1)] = (0.0, 5.0, 10.0, 25.0, 50.0, 100.0)
+    """Per cent of the cars that have it; a greater share has the cars of every smaller one; 0 is always run."""
+    driver: str = "average"
+    """Driver profile by which drivers react to the assistant; otherwise they drive as they would."""
+    minutes: Annotated[float, Ge(1), Le(1_440)] = 60.0
+    """How long after the warm-up the traffic is followed."""
+    every_s: Annotated[float, Ge(10), Le(3_600)] = 60.0
+    """Seconds between two looks of a rule at the news."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

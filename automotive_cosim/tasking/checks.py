@@ -6,7 +6,8 @@ so it can be compared and stored; ``str`` describes it in words. Values may be p
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -30,6 +31,9 @@ class Check(Protocol):
         ...
 
 
+NUMBER = re.compile(r"(\d+):(\d\d)|\d+(?:\.\d+)?")
+"""A time of day or a number."""
+
 T = TypeVar("T")
 
 
@@ -41,7 +45,6 @@ class _OfSignal(Generic[T]):
 
     @property
     def writes(self) -> frozenset[str]:
-        """The signal's path."""
         return frozenset({self.signal.path})
 
 
@@ -53,7 +56,6 @@ class _OfData:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The entry's key."""
         return frozenset({self.key})
 
 
@@ -64,7 +66,6 @@ class SignalIs(_OfSignal[Any]):
     values: tuple[Any, ...]
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the present value qualifies."""
         return now.signals[self.signal.path] in self.values
 
     def __str__(self) -> str:
@@ -78,7 +79,6 @@ class SignalRaised(_OfSignal[float]):
     by: float
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the change since the start qualifies."""
         return float(now.signals[self.signal.path]) - float(start.signals[self.signal.path]) >= self.by
 
     def __str__(self) -> str:
@@ -92,7 +92,6 @@ class SignalLowered(_OfSignal[float]):
     by: float
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the change since the start qualifies."""
         return float(start.signals[self.signal.path]) - float(now.signals[self.signal.path]) >= self.by
 
     def __str__(self) -> str:
@@ -107,7 +106,6 @@ class SignalWithin(_OfSignal[float]):
     high: float
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the present value qualifies."""
         return self.low - 1e-9 <= float(now.signals[self.signal.path]) <= self.high + 1e-9
 
     def __str__(self) -> str:
@@ -119,7 +117,6 @@ class SignalChanged(_OfSignal[Any]):
     """A signal has any other value than at the start."""
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the change since the start qualifies."""
         return bool(now.signals[self.signal.path] != start.signals[self.signal.path])
 
     def __str__(self) -> str:
@@ -133,7 +130,6 @@ class AppDataIs(_OfData):
     values: tuple[Any, ...]
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the present value qualifies."""
         return now.commands[self.key] in self.values
 
     def __str__(self) -> str:
@@ -186,7 +182,6 @@ class Entered(_OfData):
     entry: Any = None
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether exactly that entry was added since the start."""
         added = now.commands[self.key][len(start.commands[self.key]) :]
         if len(added) != 1 or self.entry is None:
             return len(added) == 1
@@ -205,7 +200,6 @@ class EnteredOf(_OfData):
     signal: Signal[str]
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether exactly that entry was added since the start."""
         added = now.commands[self.key][len(start.commands[self.key]) :]
         return bool(added == [start.signals[self.signal.path]])
 
@@ -220,7 +214,6 @@ class Counted(_OfData):
     by: int = 1
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether it has risen by ``by``."""
         return bool(now.commands[self.key] - start.commands[self.key] == self.by)
 
     def __str__(self) -> str:
@@ -236,16 +229,119 @@ class SeatRecalled:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The paths of what a memory holds."""
         return frozenset(signal.path for signal in REMEMBERED)
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether each of them has the stored value."""
-        stored = now.commands["seat.memory"][self.slot - 1]
+        return self.is_so(now, now)
+
+    def is_so(self, memory: Moment, now: Moment) -> bool:
+        """Whether everything stands as that memory had it at one moment."""
+        stored = memory.commands["seat.memory"][self.slot - 1]
         return all(now.signals[signal.path] == value for signal, value in zip(REMEMBERED, stored, strict=True))
 
     def __str__(self) -> str:
         return f"seat and mirrors as in memory {self.slot}"
+
+
+@dataclass(frozen=True, slots=True)
+class EnteredAll(_OfData):
+    """Exactly these entries were added to a list (messages sent, calls, saved places), in this order or in any."""
+
+    entries: tuple[Any, ...]
+    in_order: bool = False
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        added = list(now.commands[self.key][len(start.commands[self.key]) :])
+        if self.in_order or len(added) != len(self.entries):
+            return added == list(self.entries)
+        return all(added.count(entry) == self.entries.count(entry) for entry in self.entries)
+
+    def __str__(self) -> str:
+        return f"added to {self.key}{', in this order' if self.in_order else ''}: {self.entries!r}"
+
+
+@dataclass(frozen=True, slots=True)
+class AppDataIncludes(_OfData):
+    """A list of the apps' data (messages read) contains all of these entries, whatever else it contains."""
+
+    entries: tuple[Any, ...]
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return all(entry in now.commands[self.key] for entry in self.entries)
+
+    def __str__(self) -> str:
+        return f"{' and '.join(map(repr, self.entries))} among {self.key}"
+
+
+@dataclass(frozen=True, slots=True)
+class SaysFigure:
+    """Exactly one message was sent, to that person, with these words and one figure, to a tolerance."""
+
+    to: str
+    words: str
+    """What the message has to contain besides, such as a unit."""
+    figure: float
+    """A number; for a time of day the minutes since midnight."""
+    tolerance: float
+
+    @property
+    def writes(self) -> frozenset[str]:
+        return frozenset({"messages.sent"})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether that message is the only one since the start."""
+        key = "messages.sent"
+        added = now.commands[key][len(start.commands[key]) :]
+        if len(added) != 1 or added[0]["to"] != self.to or self.words not in added[0]["text"]:
+            return False
+        said = NUMBER.search(added[0]["text"])
+        return said is not None and abs(_value(said) - self.figure) <= self.tolerance + 1e-9
+
+    def __str__(self) -> str:
+        return f"a message to {self.to} with {self.figure} (to {self.tolerance:g}) and {self.words!r}"
+
+
+@dataclass(frozen=True, slots=True)
+class AppDataAt(_OfData):
+    """One place of a list in the apps' data has a value; the others are unchanged."""
+
+    place: int
+    value: Any
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        wanted = list(start.commands[self.key])
+        value = list(self.value) if isinstance(self.value, tuple) else self.value
+        wanted[self.place] = {**wanted[self.place], **value} if isinstance(value, Mapping) else value
+        return bool(now.commands[self.key] == wanted)
+
+    def __str__(self) -> str:
+        return f"entry {self.place + 1} of {self.key} is {self.value!r}"
+
+
+@dataclass(frozen=True, slots=True)
+class AppDataWithout(_OfData):
+    """One place of a list in the apps' data is gone; the others are unchanged."""
+
+    place: int
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        wanted = list(start.commands[self.key])
+        del wanted[self.place]
+        return bool(now.commands[self.key] == wanted)
+
+    def __str__(self) -> str:
+        return f"entry {self.place + 1} of {self.key} is gone"
+
+
+@dataclass(frozen=True, slots=True)
+class SeatAsStored(SeatRecalled):
+    """Seat and mirrors stand as a memory place has them since the start."""
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return self.is_so(start, now)
+
+    def __str__(self) -> str:
+        return f"seat and mirrors as stored in place {self.slot}"
 
 
 REQUEST_WORDS = {Reroute: "reroute", PullOver: "pull-over", SlowDown: "slow-down"}
@@ -265,7 +361,6 @@ class RoadAsked:
         return frozenset({"requests", "navigation.destination"} if sets_out else {"requests"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether exactly that request was made since the start."""
         asked = now.commands["requests"][len(start.commands["requests"]) :]
         if len(asked) != 1:
             return False
@@ -286,7 +381,6 @@ class AskedFirst:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The key of the questions."""
         return frozenset({"questions"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -306,11 +400,9 @@ class NotAsked:
 
     @property
     def writes(self) -> frozenset[str]:
-        """Nothing."""
         return frozenset()
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether there was no question since the start."""
         return not questions(start, now)
 
     def __str__(self) -> str:
@@ -333,11 +425,9 @@ class AllOf:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of all the checks."""
         return frozenset().union(*(check.writes for check in self.checks))
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether all hold."""
         return all(check.holds(start, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
@@ -358,7 +448,6 @@ class AlertGiven:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The key of the alerts."""
         return frozenset({"alerts"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -392,11 +481,9 @@ class AnyOf:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of all the checks."""
         return frozenset().union(*(check.writes for check in self.checks))
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether any holds."""
         return any(check.holds(start, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
@@ -409,11 +496,9 @@ class NothingDone:
 
     @property
     def writes(self) -> frozenset[str]:
-        """Nothing."""
         return frozenset()
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Always true: there is nothing to reach."""
         return True
 
     def __str__(self) -> str:
@@ -423,3 +508,8 @@ class NothingDone:
 def _either(values: object) -> str:
     """The accepted values in words; before they are bound they may be one parameter."""
     return " or ".join(map(str, values)) if isinstance(values, tuple) else str(values)
+
+
+def _value(said: re.Match[str]) -> float:
+    hours, minutes = said.groups()
+    return float(said[0]) if hours is None else 60.0 * int(hours) + int(minutes)

@@ -86,7 +86,6 @@ class Says:
 
         Args:
             start: the hand-over.
-            now: the present.
             steps: actions so far.
         """
         return (
@@ -157,7 +156,6 @@ def dialogue(
     """Questions in order, with what each is about and whether it is needed.
 
     Args:
-        texts: the questions.
         topics: what the driver can be asked about.
         needed: the topics that have to be asked about, once each.
         neutral: the answer to a question about none of them.

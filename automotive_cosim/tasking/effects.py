@@ -39,11 +39,9 @@ class CabinWarmer:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The climate's commands."""
         return HEATING
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the present settings warm that much more."""
         acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, start))
         return acted.temperature_c - idle.temperature_c >= self.by_k
 
@@ -62,11 +60,9 @@ class GlassClears:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The climate's commands."""
         return HEATING
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the present settings clear that much more."""
         acted, idle = (self._pane(_in_a_minute(settings.signals, now)) for settings in (now, start))
         return idle.fog_inside - acted.fog_inside >= self.by
 

@@ -18,7 +18,6 @@ class After:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of both."""
         return self.first.writes | self.then.writes
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -47,7 +46,6 @@ class Lasted:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of the check."""
         return self.check.writes
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -75,7 +73,6 @@ class NotBefore:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of the check."""
         return self.check.writes
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
@@ -98,11 +95,9 @@ class Watched:
 
     @property
     def writes(self) -> frozenset[str]:
-        """Nothing."""
         return frozenset()
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether it has passed."""
         return now.time_s - start.time_s >= self.seconds - 1e-9
 
     def __str__(self) -> str:
@@ -120,7 +115,6 @@ class While:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of both."""
         return self.condition.writes | self.check.writes
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:

@@ -66,7 +66,6 @@ def draw(
     instances until the task has no more.
 
     Args:
-        task: the task.
         half_name: ``first`` or ``second``.
         number: which instance, from 0.
         content: the cockpit's content (``Cockpit.content``); without it, a parameter that comes from there is its

@@ -33,7 +33,7 @@ from automotive_cosim.cockpit import signals
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import Action, ActionType, PullOver, Reroute, SlowDown
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.tasking import checks, effects, history, records, triggers
+from automotive_cosim.tasking import checks, effects, history, triggers
 from automotive_cosim.tasking.checks import AllOf, AnyOf, AppDataIs, Check, SignalIs, SignalWithin
 from automotive_cosim.tasking.moves import (
     Consult,
@@ -250,7 +250,6 @@ def moves(text: str, decode: Decode, solution: Sequence[Move] = ()) -> tuple[Mov
     """Moves as they are written.
 
     Args:
-        text: what is written.
         decode: turns a written value into one of a type.
         solution: what ``first`` and ``last`` are of.
 
@@ -530,7 +529,7 @@ class _Conditions(_Goals):
 def conditions_by_name(*, of_trigger: bool) -> Mapping[str, type[Any]]:
     """The classes of conditions by their names in small letters, without those that have a sign or a word."""
     written = {AllOf, AnyOf, SignalIs, SignalWithin, All, Not, SignalAbove, SignalBelow, SignalHas}
-    where: tuple[ModuleType, ...] = (triggers,) if of_trigger else (checks, effects, history, records)
+    where: tuple[ModuleType, ...] = (triggers,) if of_trigger else (checks, effects, history)
     asked = "__call__" if of_trigger else "holds"
     found = (each for module in where for each in vars(module).values() if inspect.isclass(each))
     return {

@@ -2,18 +2,69 @@
 
 from __future__ import annotations
 
+import os
 import runpy
 import tomllib
 import traceback
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import fields, is_dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any
 
-from automotive_cosim.errors import UserError
+import numpy as np
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.registry import by_any_name
+from automotive_cosim.contracts.roads import RoadNetwork
+from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.files import open_file
 from automotive_cosim.formats.toml import Document, read_toml
+from automotive_cosim.scenarios.reader import shipped
+from automotive_cosim.tasking.moves import Open
 from automotive_cosim.tasking.reading import shared, tasks_in
 from automotive_cosim.tasking.sets import Suite
-from automotive_cosim.tasking.task import Module, Task
+from automotive_cosim.tasking.task import Half, Module, Task
+
+
+@cache
+def data_keys() -> frozenset[str]:
+    """The keys of ``Moment.commands``."""
+    nowhere = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
+    return frozenset(Cockpit(nowhere, rng=np.random.default_rng(0)).commands())
+
+
+def check(half: Half) -> Iterator[tuple[str, UnknownNameError]]:
+    """The names in a half that are unknown, each with the field that it is in."""
+    start = half.start
+    if start.scenario not in shipped() and not os.path.exists(start.scenario):  # noqa: PTH110, false if too long
+        yield "start", UnknownNameError("scenario", start.scenario, shipped(), "automotive-cosim scenarios list")
+    for field, ways in (("moves", (half.moves,)), ("ways", half.ways), ("slips", half.slips)):
+        screens = {move.app for way in ways for move in way if isinstance(move, Open)}
+        for name in screens - by_any_name().keys():
+            yield field, UnknownNameError("screen", name, by_any_name())
+    for field, keys in (("goal", {*_keys(half.goal)}), ("may_write", half.may_write)):
+        yield from ((field, UnknownNameError("entry of the data", key, data_keys())) for key in _beyond(keys))
+
+
+def _beyond(keys: Collection[str]) -> list[str]:
+    """Those that the car does not have."""
+    return sorted(key for key in keys if not key.startswith("Vehicle.") and key not in data_keys())
+
+
+def _keys(part: Any) -> Iterator[str]:
+    """The keys of the apps' data that a goal names."""
+    if isinstance(part, tuple):
+        for each in part:
+            yield from _keys(each)
+    elif is_dataclass(part):
+        for each in fields(part):
+            value = getattr(part, each.name)
+            if each.name == "key" and isinstance(value, str):
+                yield value
+            else:
+                yield from _keys(value)
+
 
 VARIABLE = "AUTOMOTIVE_COSIM_TASKS"
 """Environment variable with the folder of the user's own, so that worker processes load it too."""
@@ -55,7 +106,7 @@ def tasks_of(path: Path) -> Iterable[Task]:
     """
     if path.suffix == ".py":
         return _by_python(path)
-    from automotive_cosim.tasking.known import check  # with the whole car, which the catalogue does without
+    from automotive_cosim.tasking.own_files import check  # with the whole car, which the catalogue does without
 
     return tasks_in(read_toml(path), shared(), check)
 

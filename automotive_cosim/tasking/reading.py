@@ -37,7 +37,6 @@ from automotive_cosim.formats.checked import Steps
 from automotive_cosim.formats.toml import Document
 from automotive_cosim.tasking import notation
 from automotive_cosim.tasking.checks import Check, NothingDone
-from automotive_cosim.tasking.lexicon import Lexicon
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.notation import (
     PLACEHOLDER,
@@ -49,7 +48,7 @@ from automotive_cosim.tasking.notation import (
     signal_named,
 )
 from automotive_cosim.tasking.parameters import Choices, FromCockpit, Param
-from automotive_cosim.tasking.speech import Speech
+from automotive_cosim.tasking.speech import Lexicon, Speech
 from automotive_cosim.tasking.task import Basis, Half, Start, Task
 from automotive_cosim.tasking.triggers import TriggerCondition
 
@@ -110,8 +109,6 @@ def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> It
     """The tasks of a file, in order.
 
     Args:
-        document: the file.
-        shared: what every file may use.
         check: finds in a half what is wrong with it, and in which field.
 
     Raises:
@@ -227,7 +224,6 @@ class _Reader:
         """What leads on from there, once something has been refused."""
 
     def task(self, entry: Any, default: Mapping[str, Any]) -> Task:
-        """The task of an entry."""
         if not isinstance(entry, Mapping):
             raise UserError("is no table of a task")
         given = self.table(entry, default)
@@ -428,7 +424,6 @@ class _Reader:
         return Param("occupants", {people: company(people) for people in OCCUPANTS})
 
     def topic(self, name: str) -> Any:
-        """The topic of that name."""
         known = {topic.name: topic for topic in self._topics}
         if name not in known:
             raise UnknownNameError("topic", name, known)

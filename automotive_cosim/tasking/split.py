@@ -28,7 +28,6 @@ def split_of(task: Task, seed: int, *, held_out: bool = False, redrawn: int = 0)
     """The set of an episode.
 
     Args:
-        task: the task.
         seed: the episode's seed, which draws the phrasing.
         held_out: whether the held-out phrasing is used, whatever is drawn.
         redrawn: how many phrasings further than the seed's.

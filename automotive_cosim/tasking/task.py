@@ -316,7 +316,6 @@ class Task:
 
     @property
     def halves(self) -> tuple[str, ...]:
-        """Names of its halves."""
         return ("first", "second") if self.second else ("first",)
 
     @property

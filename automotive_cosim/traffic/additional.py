@@ -102,7 +102,6 @@ def read_ground(
     """The areas in the additional files of a configuration, in the order in which they are drawn.
 
     Args:
-        configuration: names the files.
         roads: the network as in its file, for polygons in longitude and latitude; without a projection those are
             left out.
         also: called with each element of these files.

@@ -134,9 +134,7 @@ class Traffic(Protocol):
         ...
 
     @property
-    def state(self) -> DrivingState:
-        """The newest state."""
-        ...
+    def state(self) -> DrivingState: ...
 
     def start(self, duration_s: float) -> None:
         """Starts the next call, which must be ``advance`` of that duration, in the background while the caller does

@@ -72,7 +72,6 @@ class MessageChannel:
             raise ClosedError from error
 
     def receive_socket(self) -> socket.socket:
-        """Receives a socket."""
         _, descriptors, _, _ = socket.recv_fds(self._socket, 1, 1)
         if not descriptors:
             raise ClosedError

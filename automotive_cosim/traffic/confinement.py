@@ -57,9 +57,6 @@ def version() -> int:
 def confine(folders: Iterable[Path]) -> bool:
     """Lets this thread, and what it starts, write only below some folders and open no connection.
 
-    Args:
-        folders: the folders, which exist.
-
     Returns:
         Whether the kernel does so.
     """

@@ -102,7 +102,6 @@ class Congestion:
         """Starts at free flow.
 
         Args:
-            network: the network.
             vehicles: the lane, inside a junction or not, the speed in m/s and the wanted speed of each vehicle that
                 drives as cars do; those on lanes that are closed to cars are left out here.
             free: what a drive without traffic is like.
@@ -296,7 +295,6 @@ class Route:
         Args:
             index: the edge of the route, or the last one before the junction that the car is in.
             position_m: from the start of the route.
-            next_light: passed on.
         """
         leg = self._legs[index]
         left_m = max(0.0, self.length_m - position_m)

@@ -85,7 +85,9 @@ class Detours:
             return  # it is on the closed road, and drives on
         kind = sumo.type_of(vehicle)
         before = (here for here, ways in self._network.crossings.items() if beyond in ways)
-        found = [way for each in before if (way := sumo.find_route(route[0], each, kind, NOW, AVERAGED)).edges]
+        found = []
+        with suppress(*sumo.refusals):  # it is on a road that the hour has closed, from which SUMO finds no way
+            found = [way for each in before if (way := sumo.find_route(route[0], each, kind, NOW, AVERAGED)).edges]
         if found:
             with suppress(*sumo.refusals):  # such as a stop beyond: it waits, and SUMO moves it on in the end
                 sumo.set_route(vehicle, min(found, key=lambda way: way.travelTime).edges)

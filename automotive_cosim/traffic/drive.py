@@ -30,16 +30,27 @@ class Stepper(Protocol):
 class EgoDrive:
     """One drive on a road, from its first instant."""
 
-    def __init__(self, road: Stepper, driver: Driver, now: Instant) -> None:
-        """Takes over the road, and lets the driver set the pedals."""
+    def __init__(
+        self, road: Stepper, driver: Driver, now: Instant, *, take: Callable[[], None] | None = None
+    ) -> None:
+        """Takes over the road, and lets the driver set the pedals.
+
+        Args:
+            road: what moves the ego.
+            driver: its driver.
+            now: the first instant.
+            take: SUMO goes on driving it as it does until the cockpit asks for something; then this is called, and
+                from there on the driver drives. None where the driver does from the first instant.
+        """
         self._road = road
         self._driver = driver
         self._now = now
-        driver.tick(now)
+        self._take = take
+        if take is None:
+            driver.tick(now)
 
     @property
     def state(self) -> DrivingState:
-        """The newest state."""
         return self._now.state
 
     @property
@@ -62,11 +73,23 @@ class EgoDrive:
 
     def step(self) -> tuple[Event, ...]:
         """One step of a drive that has not ended; what happened in it."""
-        driver = self._driver
-        self._now, events = self._road.step(hazard_lights=driver.hazard_lights)
-        return events if self.has_ended else events + driver.tick(self._now)
+        return self.proceed(*self._road.step(hazard_lights=self.hazard_lights))
+
+    @property
+    def hazard_lights(self) -> bool:
+        """Whether they are on."""
+        return self._driver.hazard_lights
+
+    def proceed(self, now: Instant, events: tuple[Event, ...]) -> tuple[Event, ...]:
+        """Takes the instant after a step and its events, and gives the driver his turn; all that happened."""
+        self._now = now
+        return events if self.has_ended or self._take is not None else events + self._driver.tick(now)
 
     def request(self, request: RoadRequest) -> Answer:
+        if self._take is not None and not self.has_ended:
+            self._take()
+            self._take = None
+            self._driver.tick(self._now)
         return self._driver.request(request, self.state)
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:

@@ -127,7 +127,7 @@ DRIVES_ON = "driver_drives_on"
 WAKES_UP = "driver_wakes"
 CLEARS_VIEW = "driver_clears_view"
 BUCKLES = "driver_buckles"
-"""Kinds of the events after which hands do something in the car (``cosim.occupant_acts``)."""
+"""Kinds of the events after which hands do something in the car (``cosim.car``)."""
 PARKS = "driver_parks"
 SETS_OFF = "driver_sets_off"
 """Kinds of the events of a planned halt."""
@@ -180,6 +180,8 @@ class Driver:
     plan: EgoPlan
     pedals: Pedals
     step_s: float
+    own: DriverProfile | None = None
+    """How the driver of a car that drives anyway does so; None drives by the plan's profiles."""
     hazard_lights: bool = False
     _profile: DriverProfile = field(init=False)
     _draws: np.random.Generator = field(init=False)
@@ -223,7 +225,7 @@ class Driver:
 
     def __post_init__(self) -> None:
         self._mood = self.plan.driver
-        self._profile = profile(self._mood)
+        self._profile = self.own or profile(self._mood)
         self._draws = np.random.default_rng([self.plan.seed, 0])
         self._headway_s = self._profile.headway_s
         self._choose_speed()
@@ -522,7 +524,7 @@ class Driver:
 
     def _drive_as(self, name: str) -> None:
         """Drives by another profile; what an alert had brought about is forgotten, unless its reason is there."""
-        self._profile = profile(name)
+        self._profile = self.own or profile(name)
         if self._reason is None:
             self._law_abiding, self._easing_mps2 = False, EASING_MPS2
             self._headway_s = self._profile.headway_s

@@ -55,16 +55,13 @@ class ElementHandler(Protocol):
         """Takes the start of an element."""
         ...
 
-    def end(self, name: str) -> None:
-        """Takes its end."""
-        ...
+    def end(self, name: str) -> None: ...
 
 
 def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file") -> None:
     """Checks a network, a route file or an additional file, also packed, and the files that it names.
 
     Args:
-        path: the file.
         also: reads the file, too.
         what: what the file should be, for errors.
 
@@ -174,7 +171,6 @@ class _Reader:
     within: list[str] = field(default_factory=list)
 
     def start(self, name: str, attributes: dict[str, str], line: int) -> None:
-        """Checks an element."""
         if name not in ELEMENTS and self.within and "metadata" not in self.within:
             unknown = UnknownNameError("element of SUMO", name[:80], ELEMENTS, "docs/reference/scenarios.md")
             raise ScenarioError(f"{self.path} line {line}: {unknown}")
@@ -270,7 +266,6 @@ class _Writer:
             self.file.write(f"<{name}{''.join(f' {key}={quoteattr(value)}' for key, value in new.items())}>")
 
     def end(self, name: str) -> None:
-        """Writes its end."""
         if self.left_out:
             self.left_out -= 1
         else:

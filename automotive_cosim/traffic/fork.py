@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections import Counter, OrderedDict
+from collections import Counter, OrderedDict, deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from weakref import WeakValueDictionary
 
 from automotive_cosim.contracts import (
     Answer,
@@ -33,7 +34,9 @@ from automotive_cosim.traffic.keeper import started
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
+from automotive_cosim.traffic.shadow import Passed, by_step
 from automotive_cosim.traffic.steering import KEEPS_ROUTE
+from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_snapshot, unpack_state
 
 if TYPE_CHECKING:
@@ -61,7 +64,6 @@ class Forked:
         """Loads the scenario and warms up its traffic, or copies that of one that has the same.
 
         Args:
-            scenario: the scenario to run.
             seed: seed of SUMO's random numbers.
             progress: called with the progress of the warm-up.
             allow_unprojected: accept a network without projection, with lon and lat None.
@@ -101,14 +103,23 @@ class Forked:
 
         Args:
             call: a module's function, which is sent by its name, of what runs there and the arguments.
-            arguments: its further arguments.
-            named: the same.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
         """
         answer: T = self._source.warm_call("call", call, arguments, named)
         return answer
+
+    def road(self) -> RemoteRoad:
+        """A copy of the traffic in which cars can be equipped.
+
+        Raises:
+            TrafficError: the simulation died or hung.
+        """
+        road = RemoteRoad(self._source, self._source.copied())
+        road.is_held = True
+        road.run(0.0)
+        return road
 
     def copy(self) -> RemoteCopy:
         """A copy of the traffic without an ego.
@@ -188,63 +199,240 @@ class RemoteCopy(_Remote):
         """Folder of SUMO's own outputs, complete when this is closed; None without any."""
 
 
-class RemoteTraffic(_Remote):
-    """One drive in a process of its own."""
+class RemoteRoad(_Remote):
+    """The traffic in a process of its own, and the equipped cars in it, each of which is a drive.
 
-    def __init__(self, source: _Source, process: RemoteProcess, state: Packed) -> None:
+    The car that asks first lets the road run for all. The others are behind until they have driven as far, and
+    what they then ask the road for would come too late, so let all drive to one instant before any asks.
+    """
+
+    def __init__(self, source: _Source, process: RemoteProcess, original: RemoteTraffic | None = None) -> None:
+        """Takes over a process.
+
+        Args:
+            source: where its copies come from.
+            process: the traffic.
+            original: the drive that its only car continues without the requests of that drive's cockpit: what the
+                other cars of the original ask for is asked for here too, as far as the original has driven.
+        """
         super().__init__(process)
-        self._source = source
-        self._state = unpack_state(state)
+        self.source = source
+        self.step_s = source.step_s
+        self.time_s = 0.0
+        """Simulation time to which it has run."""
+        self.is_held = False
+        """Whether it goes on without an equipped car, until it is closed."""
+        self._cars: WeakValueDictionary[str, RemoteTraffic] = WeakValueDictionary()
+        """Who drops a drive without closing it ends it as well."""
+        self._entered: list[RemoteTraffic] = []
         self._started_s: float | None = None
+        self.asked: list[tuple[float, str, RoadRequest]] = []
+        """What its cars have asked for, while there are several: simulation time, car, request."""
+        self._original = original
+        self._heard = len(original.road.asked) if original else 0
+        """How much of what the original's cars asked for has been heard here."""
+
+    def send(self, car: str, plan: EgoPlan) -> None:
+        """Sends an equipped car to the beginning of its trip, where it enters the traffic as soon as there is a gap
+        (``entered``). Hour and weather are those of the first car.
+
+        Raises:
+            ScenarioError: its trip has no route, its edges are not in the network, or there is such a vehicle.
+            TrafficError: the simulation died.
+        """
+        self._process.call("send", car, plan)
+
+    def equip(self, car: str, plan: EgoPlan) -> RemoteTraffic:
+        """Puts a cockpit into a vehicle that drives anyway, and goes on as it does until something is asked for.
+
+        Raises:
+            ScenarioError: there is no such vehicle on a road for cars.
+            TrafficError: the simulation died.
+        """
+        return self.take(car, self._process.call("equip", car, plan))
+
+    def entered(self) -> tuple[RemoteTraffic, ...]:
+        """The cars that have entered the traffic since this was last called, where they are now."""
+        new, self._entered = tuple(self._entered), []
+        for traffic in new:
+            traffic.catch_up()
+        return new
+
+    def take(self, car: str, state: Packed) -> RemoteTraffic:
+        """The drive of a car that has entered."""
+        traffic = self._cars[car] = RemoteTraffic(self, state, car)
+        return traffic
+
+    def leave(self, car: str) -> None:
+        """A cockpit is no longer used; without one, the process ends, unless it is held."""
+        if self._cars.pop(car, None) is None:
+            return
+        if (not self._cars and not self.is_held) or self._is_busy:
+            self.close()
+        elif not self._process.is_broken:
+            self._process.call("forget", car)
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether several equipped cars drive on it."""
+        return len(self._cars) > 1
+
+    def ask(self, car: str, state: DrivingState, request: RoadRequest) -> Answer:
+        """Makes a request of a car."""
+        if self.is_shared:
+            self.asked.append((state.time_s, car, request))
+        answer: Answer = self._process.call("request", request, car)
+        return answer
+
+    def start(self, duration_s: float) -> None:
+        """Starts to run in the background; the next call must be ``run`` of that duration."""
+        if self._started_s is None and not self._to_hear():
+            self._process.send("advance", duration_s, tuple(self._cars))
+            self._started_s = duration_s
+
+    def run(self, duration_s: float) -> None:
+        """Lets the traffic run, and tells every car what it has passed.
+
+        Raises:
+            TrafficError: the simulation failed.
+        """
+        for part_s in self._parts(duration_s):
+            if self._started_s is None:
+                self._process.send("advance", part_s, tuple(self._cars))
+                self._started_s = part_s
+            assert part_s == self._started_s, "another advance was started"
+            self._started_s = None
+            passed, entered, self.time_s = self._process.receive()
+            for car, each in passed.items():
+                if (traffic := self._cars.get(car)) is not None:
+                    traffic.see(unpack_advance(each))
+            if self._original is None:
+                self._entered += [self.take(car, state) for car, state in entered.items()]
+
+    def reach(self, time_s: float) -> None:
+        """Lets the traffic run to a simulation time, unless it has."""
+        if (left_s := time_s - self.time_s) > self.step_s / 2:
+            self.run(left_s)
+
+    def _to_hear(self) -> list[tuple[float, str, RoadRequest]]:
+        """What the other cars of the original have asked for and this copy has not heard."""
+        return self._original.road.asked[self._heard :] if self._original else []
+
+    def _parts(self, duration_s: float) -> Iterator[float]:
+        """The duration, in parts between which the requests of the original's other cars are made."""
+        original = self._original
+        if original is None or self._started_s is not None or not self._to_hear():
+            yield duration_s
+            return
+        steps = round(duration_s / self.step_s)
+        now_s = self.time_s
+        for time_s, car, request in self._to_hear():
+            before = round((time_s - now_s) / self.step_s)
+            if before >= steps:
+                break
+            if before > 0:
+                yield before * self.step_s
+                now_s, steps = time_s, steps - before
+            self._heard += 1
+            if car != original.car:
+                try:
+                    self._process.call("request", request, car)
+                except TrafficError:  # a car that has not entered here, or is no longer there
+                    if self._process.is_broken:
+                        raise
+        yield steps * self.step_s
+
+
+class RemoteTraffic(_Remote):
+    """One drive on a road in a process of its own, alone or beside others."""
+
+    def __init__(self, road: RemoteRoad, state: Packed, car: str = EGO) -> None:
+        super().__init__(road._process)
+        self.road = road
+        self.car = car
+        """SUMO's id of the car."""
+        self._state = unpack_state(state)
+        self._ahead: deque[Passed] = deque()
+        """Steps that the road has run and this drive has not come to."""
         self.is_steered = False
         """Whether a request since this copy was made has changed anything in the simulation."""
 
     @property
     def network(self) -> RoadNetwork:
         """The road network for maps."""
-        return self._source.network
+        return self.road.source.network
 
     @property
     def state(self) -> DrivingState:
-        """The newest state."""
         return self._state
 
     def start(self, duration_s: float) -> None:
-        if self._started_s is None:
-            self._process.send("advance", duration_s)
-            self._started_s = duration_s
+        if not self._ahead:
+            self.road.start(duration_s)
 
     def advance(self, duration_s: float) -> Advance:
-        self.start(duration_s)
-        assert duration_s == self._started_s, "another advance was started"
-        self._started_s = None
-        advance = unpack_advance(self._process.receive())
-        if advance.states:
-            self._state = advance.states[-1]
-        return advance
+        steps = round(duration_s / self.road.step_s)
+        missing = steps - len(self._ahead)
+        if missing > 0 and (self._ahead[-1][0] if self._ahead else self._state).end is None:
+            self.road.run(duration_s if missing == steps else missing * self.road.step_s)
+        told = [self._ahead.popleft() for _ in range(min(steps, len(self._ahead)))]
+        if told:
+            self._state = told[-1][0]
+        return Advance(tuple(state for state, _ in told), tuple(event for _, passed in told for event in passed))
+
+    def catch_up(self) -> None:
+        """Goes to where the road has run to; what passed before is not told."""
+        if self._ahead:
+            self._state = self._ahead[-1][0]
+            self._ahead.clear()
+
+    def see(self, passed: Advance) -> None:
+        """Takes note of what the road has run."""
+        self._ahead.extend(by_step(passed))
 
     def request(self, request: RoadRequest) -> Answer:
-        answer: Answer = self._process.call("request", request)
+        """See ``Traffic.request``.
+
+        Raises:
+            RuntimeError: the road has run further for another car; drive on as far before asking.
+        """
+        if self._ahead:
+            raise RuntimeError(
+                f"car {self.car!r} cannot ask in the past; the road has run to {self.road.time_s:g} s"
+            )
+        answer = self.road.ask(self.car, self._state, request)
         kept = not answer.accepted or answer.reason == KEEPS_ROUTE
         self.is_steered = self.is_steered or not (isinstance(request, Reroute) and kept)
         return answer
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        options: tuple[RouteOption, ...] = self._process.call("alternatives", age_s)
+        options: tuple[RouteOption, ...] = self._process.call("alternatives", age_s, self.car)
         return options
 
     def look(self) -> RoadSnapshot:
-        return unpack_snapshot(self._process.call("look"))
+        return unpack_snapshot(self._process.call("look", self.car))
 
     def shapes(self) -> RoadShapes:
         """See ``Traffic.shapes``; read once for all drives in the same traffic."""
-        shapes: RoadShapes = self._source.shapes or self._process.call("shapes")
-        self._source.shapes = shapes
+        source = self.road.source
+        shapes: RoadShapes = source.shapes or self._process.call("shapes", self.car)
+        source.shapes = shapes
         return shapes
 
     def branch(self) -> RemoteTraffic:
-        """An exact copy that is independent from this instant, even if this one is closed."""
-        return self._source.branched(self._process, self._state)
+        """An exact copy that is independent from this instant, even if this one is closed. Other equipped cars do
+        in it what they do beside the original, as far as that has driven; then they go on by themselves."""
+        source = self.road.source
+        road = RemoteRoad(source, source.branched(self._process), self if self.road.is_shared else None)
+        road.time_s = self.road.time_s
+        twin = road.take(self.car, pack_state(self._state))
+        twin._ahead.extend(self._ahead)
+        return twin
+
+    def close(self) -> None:
+        """See ``Traffic.close``; the last of a road's drives ends its process."""
+        self.road._is_busy = self.road._is_busy or self._is_busy
+        self.road.leave(self.car)
 
     def _drove_on(self, state: Packed | None) -> None:
         assert state is not None
@@ -283,24 +471,35 @@ class _Source:
 
     def departed(self, plan: EgoPlan) -> RemoteTraffic:
         """A drive in a process of its own."""
-        with self._lock:
-            process = self._copied()
+        process = self.copied()
         try:
             state = process.call("depart", plan)
         except BaseException:
             process.close()
             raise
-        return RemoteTraffic(self, process, state)
+        road = RemoteRoad(self, process)
+        traffic = road.take(EGO, state)
+        road.time_s = traffic.state.time_s
+        return traffic
+
+    def copied(self) -> RemoteProcess:
+        """A process that continues from where the warm one is."""
+        with self._lock:
+            return self._copied()
 
     def without_ego(self) -> RemoteCopy:
-        """A copy without an ego."""
         with self._lock:
             process = self._copied()
             return RemoteCopy(process, self._outputs_of(self._drives))
 
-    def branched(self, process: RemoteProcess, state: DrivingState) -> RemoteTraffic:
-        """A drive that continues from where another one is."""
-        return RemoteTraffic(self, process.fork(self._next_outputs()), pack_state(state))
+    def branched(self, process: RemoteProcess) -> RemoteProcess:
+        """A process that continues from where another one is."""
+        return process.fork(self._next_outputs())
+
+    @property
+    def step_s(self) -> float:
+        """Length of SUMO's steps."""
+        return self._setup.scenario.sumo.step_length_s
 
     def warm_call(self, name: str, *arguments: object) -> Any:
         """Calls the warm process itself, and any that takes its place."""

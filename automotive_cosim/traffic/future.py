@@ -33,7 +33,6 @@ class SharedFuture:
 
         Args:
             traffic: the drive, to be used only through this object.
-            step_s: length of its steps.
         """
         self.begin = traffic
         self._step_s = step_s

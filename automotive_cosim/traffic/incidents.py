@@ -25,6 +25,10 @@ from automotive_cosim.traffic.staging import staged
 class _Entry:
     incident: Incident
     staged: StagedIncident
+    stage: IncidentStage
+    """Around the car that it is staged for."""
+    zero_s: float | None = None
+    """When that car departed, from where its times count; None for the clock that all share."""
     has_begun: bool = False
     is_over: bool = False
 
@@ -39,7 +43,9 @@ class Incidents:
             ScenarioError: one of them does not fit the network.
         """
         self._stage = stage
-        self._entries = [_Entry(incident, staged(stage, incident)) for incident in scenario.incidents]
+        self._entries = [_Entry(incident, staged(stage, incident), stage) for incident in scenario.incidents]
+        self._others: list[IncidentStage] = []
+        """Around the other equipped cars."""
         self._zero_s = scenario.sumo.warm_up_s
         self._start = scenario.start
         self._trip = ""
@@ -84,11 +90,7 @@ class Incidents:
         self._trip = plan.trip.name
         self._stage.follow(self._local_time(now_s))
         for entry in self._entries:  # where they are is told with the ego's own place
-            if (
-                isinstance(entry.incident, ScriptedVehicle)
-                and not entry.has_begun
-                and self._is_due(entry.incident, 0.0)
-            ):
+            if isinstance(entry.incident, ScriptedVehicle) and not entry.has_begun and self._is_due(entry, 0.0):
                 entry.has_begun = True
                 entry.staged.begin()
 
@@ -98,18 +100,29 @@ class Incidents:
         Raises:
             ScenarioError: it does not fit the network.
         """
-        self._entries.append(_Entry(incident, staged(self._stage, incident)))
+        self._entries.append(_Entry(incident, staged(self._stage, incident), self._stage))
+
+    def join(self, plan: EgoPlan, car: str, sensor: Sensor, now_s: float) -> None:
+        """Takes note of another equipped car that has departed: what its plan stages is staged around it. The clock
+        stays that of the first.
+
+        Raises:
+            ScenarioError: an incident of the plan does not fit the network.
+        """
+        stage = self._stage.around(car, sensor)
+        self._others.append(stage)
+        self._entries += [_Entry(each, staged(stage, each), stage, now_s) for each in plan.incidents]
 
     def tick(self, now_s: float) -> tuple[Event, ...]:
         """Begins and ends the incidents that are due; called once per second of the simulation."""
-        since_s = now_s - self._zero_s
         local_time = self._local_time(now_s)
         told: list[str] = []
         going_on = [entry for entry in self._entries if not entry.is_over]
-        if any(isinstance(entry.incident, EgoIncident) for entry in going_on) and self._ego_has_left():
-            going_on = [entry for entry in going_on if not isinstance(entry.incident, EgoIncident)]
+        if any(isinstance(entry.incident, EgoIncident) for entry in going_on):
+            there = frozenset(self._stage.sumo.vehicle_ids())
+            going_on = [entry for entry in going_on if not self._has_left(entry, there)]
         for entry in going_on:
-            told += self._proceed(entry, since_s, local_time)
+            told += self._proceed(entry, now_s - self._begun_s(entry), local_time)
         self._stage.follow(local_time)
         return tuple(Event(now_s, "incident", text) for text in told if text)
 
@@ -128,9 +141,15 @@ class Incidents:
         going_on = (entry.staged.closed for entry in self._entries if entry.has_begun and not entry.is_over)
         return tuple(lane for lanes in going_on for lane in lanes)
 
-    def _ego_has_left(self) -> bool:
-        """Whether the ego has arrived or was removed, while others drive on: nothing happens around it any more."""
-        return self._stage.sensor is not None and self._stage.ego_id not in self._stage.sumo.vehicle_ids()
+    def _begun_s(self, entry: _Entry) -> float:
+        """From when the times of an incident count."""
+        return self._zero_s if entry.zero_s is None else entry.zero_s
+
+    def _has_left(self, entry: _Entry, there: frozenset[str]) -> bool:
+        """Whether the car that it goes by has arrived or was removed, while others drive on: nothing happens around
+        it any more."""
+        stage = entry.stage
+        return isinstance(entry.incident, EgoIncident) and stage.sensor is not None and stage.ego_id not in there
 
     def _local_time(self, now_s: float) -> datetime:
         """The local time: the scenario's in the warm-up, the ego's once it is driving."""
@@ -139,14 +158,16 @@ class Incidents:
 
     def take_changes(self) -> bool:
         """Whether signs or the ego's route have changed since the last call."""
-        stage = self._stage
-        changed = stage.signs.changed or stage.route_changed
-        stage.signs.changed = stage.route_changed = False
+        stages = self._stage, *self._others
+        changed = self._stage.signs.changed or any(stage.route_changed for stage in stages)
+        self._stage.signs.changed = False
+        for stage in stages:
+            stage.route_changed = False
         return changed
 
     def _proceed(self, entry: _Entry, since_s: float, local_time: datetime) -> list[str]:
         told: list[str] = []
-        if not entry.has_begun and self._is_due(entry.incident, since_s):
+        if not entry.has_begun and self._is_due(entry, since_s):
             entry.has_begun = True
             told.append(entry.staged.begin())
         if entry.has_begun and since_s < entry.incident.to_s:
@@ -157,10 +178,10 @@ class Incidents:
                 told.append(entry.staged.end())
         return told
 
-    def _is_due(self, incident: Incident, since_s: float) -> bool:
+    def _is_due(self, entry: _Entry, since_s: float) -> bool:
+        incident, sensor = entry.incident, entry.stage.sensor
         if not self._concerns(incident) or not incident.from_s <= since_s < incident.to_s:
             return False
-        sensor = self._stage.sensor
         return not isinstance(incident, EgoIncident) or (sensor is not None and sensor.position_m >= incident.at_m)
 
     def _concerns(self, incident: Incident) -> bool:

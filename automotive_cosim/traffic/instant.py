@@ -30,9 +30,7 @@ class Instant(Protocol):
         ...
 
     @property
-    def speed_mps(self) -> float:
-        """Speed of the ego."""
-        ...
+    def speed_mps(self) -> float: ...
 
     @property
     def limit_mps(self) -> float | None:
@@ -43,9 +41,7 @@ class Instant(Protocol):
     def end(self) -> EgoEnd | None: ...
 
     @property
-    def state(self) -> DrivingState:
-        """The whole state."""
-        ...
+    def state(self) -> DrivingState: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +56,6 @@ class KnownInstant:
 
     @property
     def speed_mps(self) -> float:
-        """Speed of the ego."""
         return self.state.speed_mps
 
     @property

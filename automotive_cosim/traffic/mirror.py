@@ -45,8 +45,6 @@ def write_mirrored(net: Path, target: Path, image: RoadNetwork) -> None:
     """Writes the image of a network's file, for SUMO.
 
     Args:
-        net: the network.
-        target: where to write.
         image: the image as ``mirrored`` has it.
 
     Raises:

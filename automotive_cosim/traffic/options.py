@@ -285,7 +285,6 @@ def copied(configuration: Configuration, folder: Path, network: NetworkReader | 
     Args:
         configuration: the scenario's own.
         folder: a folder for the copies, and for nothing else but what SUMO writes.
-        network: reads the network while it is copied.
 
     Raises:
         ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``).

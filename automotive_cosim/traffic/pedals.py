@@ -52,9 +52,7 @@ class Pedals(Protocol):
         """How hard the driver brakes for what can be seen coming."""
         ...
 
-    def set_hazards(self, on: bool) -> None:
-        """Hazard lights."""
-        ...
+    def set_hazards(self, on: bool) -> None: ...
 
     def pull_over(self, state: DrivingState, for_s: float, within_m: float = math.inf) -> str:
         """Stops at the side as soon as possible, for a time, and no farther on than that; returns where.

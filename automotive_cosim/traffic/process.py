@@ -28,7 +28,7 @@ from automotive_cosim.formats.writing import copy
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
-from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.convoy import Convoy
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.running import Running
 from automotive_cosim.traffic.sumo import load_library
@@ -82,9 +82,8 @@ class Server:
         return self._loaded
 
     @property
-    def _drive(self) -> EgoDrive:
-        assert self._running.drive is not None
-        return self._running.drive
+    def _convoy(self) -> Convoy:
+        return self._running.convoy
 
     def _answer(self, name: str, arguments: tuple[Any, ...]) -> tuple[str, Any]:
         try:
@@ -143,29 +142,44 @@ class Server:
 
     def do_depart(self, plan: EgoPlan) -> Packed:
         """Puts the ego on the road; returns its first state."""
-        running = self._running
-        running.drive = running.world.depart(plan, running.after_step)
-        return pack_state(self._drive.state)
+        return pack_state(self._convoy.depart(plan, self._running.after_step).state)
 
-    def do_advance(self, duration_s: float) -> Packed:
-        """Lets the traffic run."""
-        return pack_advance(self._drive.advance(duration_s, self._running.after_step))
+    def do_send(self, car: str, plan: EgoPlan) -> None:
+        """Sends another car on its way, which enters in an advance."""
+        self._convoy.send(car, plan)
 
-    def do_request(self, request: RoadRequest) -> Answer:
+    def do_equip(self, car: str, plan: EgoPlan) -> Packed:
+        """Puts a cockpit into a vehicle that drives anyway; returns its state."""
+        return pack_state(self._convoy.equip(car, plan).state)
+
+    def do_forget(self, car: str) -> None:
+        """Uses a cockpit no longer."""
+        self._convoy.forget(car)
+
+    def do_advance(
+        self, duration_s: float, cars: tuple[str, ...]
+    ) -> tuple[dict[str, Packed], dict[str, Packed], float]:
+        """Lets the traffic run; returns what passed for each of those cars, the state of each that entered, and the
+        simulation time."""
+        passed, entered = self._convoy.advance(duration_s, cars, self._running.after_step)
+        first = {car: pack_state(self._convoy.drive(car).state) for car in entered}
+        return {car: pack_advance(each) for car, each in passed.items()}, first, self._running.sumo.time()
+
+    def do_request(self, request: RoadRequest, car: str) -> Answer:
         """Makes a request to the driver or the car."""
-        return self._drive.request(request)
+        return self._convoy.drive(car).request(request)
 
-    def do_alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
+    def do_alternatives(self, age_s: float, car: str) -> tuple[RouteOption, ...]:
         """Finds alternative routes by news of that age."""
-        return self._drive.alternatives(age_s)
+        return self._convoy.drive(car).alternatives(age_s)
 
-    def do_look(self) -> Packed:
-        """Looks at everything around the ego."""
-        return pack_snapshot(self._drive.look())
+    def do_look(self, car: str) -> Packed:
+        """Looks at everything around a car."""
+        return pack_snapshot(self._convoy.drive(car).look())
 
-    def do_shapes(self) -> RoadShapes:
+    def do_shapes(self, car: str) -> RoadShapes:
         """Reads the lanes and junctions."""
-        return self._drive.shapes()
+        return self._convoy.drive(car).shapes()
 
     # --- calls of who extends it ----------------------------------------------------------------------------
 

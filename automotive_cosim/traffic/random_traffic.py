@@ -31,8 +31,6 @@ def write(path: Path, network: Network, per_km_h: float, seed: int) -> None:
     """Writes the flows as a SUMO additional file, which is empty if no edges are connected.
 
     Args:
-        path: the file to write.
-        network: the network.
         per_km_h: departures per hour and kilometre of lane.
         seed: seed of their starts and ends.
     """

@@ -30,7 +30,6 @@ def redraw(path: Path, target: Path, seed: int) -> Path:
 
     Args:
         path: SUMO's route file.
-        target: the file to write.
         seed: seed of the day.
 
     Raises:

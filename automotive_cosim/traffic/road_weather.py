@@ -128,7 +128,6 @@ class Forecast:
         """Takes a timeline in seconds after ``departure_s``; an empty one is always dry.
 
         Args:
-            timeline: the weather.
             departure_s: simulation time of its beginning.
             settles_s: over how long the road takes on the grip of other weather.
         """
@@ -190,8 +189,6 @@ class Surface:
         """Starts dry.
 
         Args:
-            sumo: the simulation.
-            network: its roads.
             left_out: types, or prefixes of their names, that stay unchanged.
             drawn: distributions, which SUMO lists among the types, and which stay unchanged too, as does everybody
                 in weather that is not felt.

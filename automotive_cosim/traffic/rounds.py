@@ -55,7 +55,6 @@ def loop_with(junctions: Iterable[tuple[str, str]], edge: str) -> frozenset[str]
 
     Args:
         junctions: the edges before and after each way through a junction.
-        edge: the one.
     """
     ahead: dict[str, list[str]] = {}
     back: dict[str, list[str]] = {}

@@ -58,8 +58,6 @@ class Router:
         """Uses a running simulation.
 
         Args:
-            sumo: the simulation.
-            network: its roads.
             congestion: the speeds of the traffic.
             type_id: vehicle type without speed deviation or rerouting device.
         """

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol, TypeVar
 
+from automotive_cosim.traffic.convoy import Convoy
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.sumo import LibSumo, load_library
 from automotive_cosim.traffic.world import World
@@ -26,7 +27,7 @@ W = TypeVar("W", bound=Watcher)
 
 
 class Running:
-    """The traffic, and the ego's drive once it has departed."""
+    """The traffic, and the equipped cars in it."""
 
     def __init__(self, world: World, beat: Callable[[], None] = lambda: None) -> None:
         """Nobody watches yet.
@@ -36,11 +37,17 @@ class Running:
             beat: gives a sign of life, called after every step.
         """
         self.world = world
-        self.drive: EgoDrive | None = None
+        self.convoy = Convoy(world)
+        """The equipped cars in it."""
         self.watchers: list[Watcher] = []
         self.done: tuple[float, float] | None = None
         """How much of a long call is done, and of how much, if it says so."""
         self._beat = beat
+
+    @property
+    def drive(self) -> EgoDrive | None:
+        """The ego's drive; None before it has departed."""
+        return self.convoy.first
 
     @property
     def sumo(self) -> LibSumo:
@@ -64,7 +71,6 @@ class Running:
         self.after_step()
 
     def after_step(self) -> None:
-        """Called after every step."""
         for each in self.watchers:
             each.after_step()
         self._beat()

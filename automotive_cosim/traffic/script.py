@@ -39,7 +39,6 @@ class VehicleScript:
         return float(self._sumo.vehicle.getDrivingDistance(car, edge, at_m, 0))
 
     def end(self, action: VehicleAction) -> None:
-        """An action is over."""
         self._left[action.name] -= 1
 
     def has_ended(self, name: str) -> bool:

@@ -44,11 +44,9 @@ class Sensor:
         Args:
             sumo: the running simulation.
             ego_id: the ego's vehicle.
-            network: the roads.
             congestion: smoothed speeds.
             incidents: gives those that live traffic reports now.
             emergency: vehicles with blue lights, updated by the owner.
-            step_s: step length.
         """
         self._sumo = sumo
         self._ego = ego_id
@@ -97,7 +95,6 @@ class Sensor:
         self._steps = 0
 
     def read(self, *, hazard_lights: bool, vehicle_count: int) -> Seen:
-        """Reads the instant."""
         sumo, ego = self._sumo, self._ego
         x_m, y_m = sumo.position(ego)
         heading_deg, speed_mps = sumo.angle(ego), sumo.speed(ego)

@@ -49,11 +49,15 @@ class SharedTraffic:
 
         Args:
             traffic: the drive, to be used only through this object.
-            step_s: length of its steps.
         """
         self._traffic = traffic
         self.step_s = step_s
         self._shadows: WeakSet[Shadow] = WeakSet()
+
+    @property
+    def wrapped(self) -> Traffic:
+        """The drive that it took over."""
+        return self._traffic
 
     @property
     def network(self) -> RoadNetwork:

@@ -149,7 +149,6 @@ def measure(
     SUMO is started as for every drive, so nothing is written to the scenario's folder.
 
     Args:
-        scenario: the scenario.
         observe_s: seconds after the warm-up.
         scale: factor on the demand; None takes the scenario's own.
         seed: SUMO's seed.
@@ -295,7 +294,6 @@ class _Watchdog:
             raise TrafficError(f"SUMO was killed by {name} while running {config}; is there enough memory?")
 
     def stop(self) -> None:
-        """Stops watching."""
         self._is_over.set()
         self._thread.join()
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from copy import copy
 from datetime import datetime
+from itertools import count
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.traffic.closures import Closures
@@ -43,8 +45,15 @@ class IncidentStage:
         self.script = VehicleScript(sumo, ego_id)
         self.drivers: dict[str, Manner] = {}
         """How others drove before they made way for the first of those with blue lights on."""
-        self._names = 0
+        self._names = count(1)
         sumo.copy_type(TEMPLATE_TYPE, CAR_TYPE)
+
+    def around(self, ego_id: str, sensor: Sensor) -> IncidentStage:
+        """The stage around another equipped car in the same traffic; signs, detours and closures are the same."""
+        other = copy(self)
+        other.ego_id, other.sensor = ego_id, sensor
+        other.script = VehicleScript(self.sumo, ego_id)
+        return other
 
     @property
     def weather(self) -> str:
@@ -87,8 +96,7 @@ class IncidentStage:
 
     def name(self, what: str) -> str:
         """A new id."""
-        self._names += 1
-        return f"automotive_cosim.{what}.{self._names}"
+        return f"automotive_cosim.{what}.{next(self._names)}"
 
     def car(
         self,

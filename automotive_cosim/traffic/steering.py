@@ -15,7 +15,7 @@ from automotive_cosim.traffic.pedals import RefusedError
 from automotive_cosim.traffic.road_weather import G_MPS2
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
-from automotive_cosim.traffic.sumo import HAZARD_SIGNAL, STRATEGIC, LibSumo
+from automotive_cosim.traffic.sumo import HAZARD_SIGNAL, SPEED_GAIN, STRATEGIC, LibSumo
 
 PARKING = 1
 """SUMO's stop flag: off the lane, so that other vehicles can pass."""
@@ -59,8 +59,11 @@ class SumoPedals:
         sensor: Sensor,
         router: Router,
         stops: Sequence[str] = (),
+        *,
+        hands_off: bool = False,
     ) -> None:
-        """Takes the ego over; ``stops`` are edges that every route to the present destination passes."""
+        """Takes the ego over; ``stops`` are edges that every route to the present destination passes. With
+        ``hands_off`` nothing is done to it before ``take``."""
         self._sumo = sumo
         self._ego = ego_id
         self._network = network
@@ -77,8 +80,16 @@ class SumoPedals:
         """How hard those behind expect the driver to brake: as hard as he can, however gently he means to."""
         self._factor = 1.0
         self._top_mps = self._set_mps = FASTEST_MPS
-        # The first change gives the ego a type of its own and redraws its speed factor, so it comes before ours.
-        sumo.set_max_speed(ego_id, FASTEST_MPS)
+        self.are_taken = False
+        """Whether the driver has them."""
+        if not hands_off:
+            self.take()
+
+    def take(self) -> None:
+        """Takes the ego over. The first change gives it a type of its own and redraws its speed factor, so it comes
+        before the driver's."""
+        self.are_taken = True
+        self._sumo.set_max_speed(self._ego, FASTEST_MPS)
 
     def renew(self, seed: int) -> None:
         renew(self._sumo, seed)
@@ -98,7 +109,7 @@ class SumoPedals:
         self._sumo.set_imperfection(self._ego, imperfection)
 
     def set_overtaking(self, readiness: float) -> None:
-        self._sumo.set_parameter(self._ego, "laneChangeModel.lcSpeedGain", f"{readiness:g}")
+        self._sumo.set_parameter(self._ego, SPEED_GAIN, f"{readiness:g}")
 
     def set_grip(self, friction: float) -> None:
         hardest_mps2 = friction * G_MPS2
@@ -123,6 +134,8 @@ class SumoPedals:
 
         SUMO applies the speed factor in bends too, but drivers who speed on straights do not corner as fast.
         """
+        if not self.are_taken:
+            return
         is_near = self._sensor.knows_emergency
         if (is_near or self._made_way) and not self._sensor.makes_way:
             self._sumo.give_back(self._ego, (self._factor, self._alignment, self._strategic))

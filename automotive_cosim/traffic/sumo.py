@@ -39,6 +39,9 @@ ANY_LANE_CHANGE, WAYMAKING = 1621, 1605
 STRATEGIC = "laneChangeModel.lcStrategic"
 """How readily a driver takes the lane of the next turn; the device makes who reacts take none."""
 
+SPEED_GAIN = "laneChangeModel.lcSpeedGain"
+"""How readily a driver changes lanes to go faster."""
+
 Manner: TypeAlias = tuple[float, str, str]
 """A driver's speed factor, place in the lane, and ``STRATEGIC``."""
 
@@ -179,7 +182,6 @@ class LibSumo:
             yield lane, speed_mps, wants.get(vehicle, THE_LIMIT)
 
     def has_device(self, vehicle: str, device: str) -> bool:
-        """Whether a vehicle has a device."""
         return bool(self.vehicle.getParameter(vehicle, f"has.{device}.device") == "true")
 
     def reroute(self, vehicle: str) -> None:

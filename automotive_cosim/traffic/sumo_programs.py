@@ -62,7 +62,6 @@ def run(
     """Runs a program to its end.
 
     Args:
-        name: the program.
         arguments: its options. A comma in a file's name parts two files, and a colon a host from its port: name
             files in a folder that anybody chose from within it.
         folder: where it runs; it can then write nowhere else, if the kernel can see to that.

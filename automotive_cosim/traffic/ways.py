@@ -36,7 +36,6 @@ def ways_from(network: Network, start: str, most: int | None = None) -> Ways:
     """Searches the network from the end of an edge; ties go to the edge found first.
 
     Args:
-        network: the network.
         start: where the routes begin.
         most: how many of the nearest edges to reach; None for all.
     """

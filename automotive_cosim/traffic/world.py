@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import chdir, suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
@@ -12,7 +13,7 @@ from pathlib import Path
 from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.formats.incidents import Incident
-from automotive_cosim.formats.scenario import Scenario, Trip
+from automotive_cosim.formats.scenario import Scenario, Trip, WeatherAt, weather_since
 from automotive_cosim.traffic.additional import placed, read_mapped
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
@@ -47,6 +48,7 @@ from automotive_cosim.traffic.sumo import (
     EGO_TYPE,
     LIMITS,
     NOW,
+    SPEED_GAIN,
     DesiredSpeed,
     LibSumo,
     load_library,
@@ -76,7 +78,6 @@ class World:
         """Loads the scenario.
 
         Args:
-            setup: what to load.
             scratch: an empty folder, which is not needed afterwards.
 
         Raises:
@@ -117,6 +118,8 @@ class World:
         drawn = self._configuration.distributions
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE), drawn)
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
+        self._weather: tuple[tuple[WeatherAt, ...], float] = (), 0.0
+        """The timeline of the first equipped car, and when it departed."""
         variable = variable_edges(self._sumo, self.network)
         self.congestion = Congestion(
             self.network,
@@ -133,8 +136,11 @@ class World:
         self.arrived: Sequence[str] = ()
         """Vehicles that left in the last step."""
         self._sample_steps = max(1, round(SAMPLE_PERIOD_S / self.step_s))
-        self._sensor: Sensor | None = None
         self._looks_around = True
+        self.roads: dict[str, EgoRoad] = {}
+        """The roads of the equipped cars that have departed, by vehicle."""
+        self._coming: dict[str, _Coming] = {}
+        """Cars that wait for a gap to enter the traffic."""
 
     def _placed(self, setup: Setup) -> Network:
         """The network on its side of the road and at the scenario's place."""
@@ -205,21 +211,14 @@ class World:
             NoRoomError: no gap opened for it.
             TrafficError: SUMO failed.
         """
-        driver_profile = profile(plan.driver)
+        profile(plan.driver)
         plan = replace(plan, weather=plan.weather or self._scenario.weather)
         self._incidents.expect(plan, self._sumo.time())
         for _ in range(round(plan.wait_s / self.step_s)):
             self.step()
             if beat is not None:
                 beat()
-        round_ = planned(self.always_open, plan.trip, plan.onward) if plan.onward else None
-        edges = round_.first if round_ else self._trip_edges(plan.trip)
-        self._add_ego(edges, driver_profile, plan.trip, parked=plan.parked)
-        if plan.emission_class:
-            try:
-                self._sumo.vehicle.setEmissionClass(EGO, plan.emission_class)
-            except self._sumo.refusals as error:
-                raise ScenarioError(f"SUMO has no emission class {plan.emission_class!r}: {error}") from error
+        self.send(EGO, plan)
         for _ in range(round(INSERTION_LIMIT_S / self.step_s)):
             self.step()
             if beat is not None:
@@ -230,25 +229,107 @@ class World:
             raise NoRoomError(
                 f"the ego found no gap on {plan.trip.from_edge!r} in {INSERTION_LIMIT_S:.0f} s of simulated time"
             )
-        if self._sumo.route(EGO)[-1] != edges[-1]:  # a rerouter stands where it departs
-            self._sumo.set_route(EGO, edges)
-        self._forecast = Forecast(plan.weather, self._sumo.time(), plan.settles_s)
-        self._surface.put(self._forecast.read(self._sumo.time()))  # its first look is on the road of its weather
-        self._sumo.set_parameter(EGO, "laneChangeModel.lcSpeedGain", f"{driver_profile.overtaking:g}")
-        sensor = Sensor(
-            self._sumo, EGO, self.network, self.congestion, self._reported, self._emergency, self.step_s
+        return self._entered(EGO)
+
+    def send(self, car: str, plan: EgoPlan) -> None:
+        """Sends an equipped car to the beginning of its trip, where it enters the traffic as soon as there is a
+        gap; ``entered`` tells when. The hour and the weather stay those of the first.
+
+        Raises:
+            ScenarioError: its trip has no route, its edges are not in the network, or there is such a vehicle.
+        """
+        sumo = self._sumo
+        if car in sumo.vehicle.getLoadedIDList():
+            raise ScenarioError(f"the traffic has a vehicle {car!r} already")
+        round_ = planned(self.always_open, plan.trip, plan.onward) if plan.onward else None
+        edges = round_.first if round_ else self._trip_edges(plan.trip)
+        self._add_car(car, edges, profile(plan.driver), plan.trip, parked=plan.parked)
+        if plan.emission_class:
+            try:
+                sumo.vehicle.setEmissionClass(car, plan.emission_class)
+            except sumo.refusals as error:
+                raise ScenarioError(f"SUMO has no emission class {plan.emission_class!r}: {error}") from error
+        self._coming[car] = _Coming(plan, edges, round_)
+
+    @property
+    def are_coming(self) -> bool:
+        """Whether an equipped car waits for a gap."""
+        return bool(self._coming)
+
+    def entered(self) -> dict[str, EgoDrive]:
+        """The drives of the cars that have entered the traffic in the last step."""
+        now = frozenset(self._sumo.departed()) if self._coming else frozenset()
+        return {car: self._entered(car) for car in list(self._coming) if car in now}
+
+    def equip(self, car: str, plan: EgoPlan) -> EgoDrive:
+        """Puts a cockpit into a vehicle that drives anyway. SUMO goes on driving it as it does, until something is
+        asked for; then its driver reacts as the plan's does, and drives on as this one did.
+
+        Raises:
+            ScenarioError: there is no such vehicle on a road for cars.
+        """
+        sumo, edges = self._sumo, self.network.edges
+        if car in self.roads or car not in sumo.vehicle_ids() or sumo.edge_of(car) not in edges:
+            raise ScenarioError(f"vehicle {car!r} is on no road for cars, or has a cockpit already")
+        drives, base = sumo.vehicle, profile(plan.driver)
+        own = replace(
+            base,
+            speed_ratio=drives.getSpeedFactor(car),
+            over_limit_max_kmh=math.inf,
+            top_speed_kmh=drives.getMaxSpeed(car) * KMH_PER_MPS,
+            headway_s=drives.getTau(car),
+            imperfection=drives.getImperfection(car),
+            overtaking=float(drives.getParameter(car, SPEED_GAIN)),
+            caution=0.0,  # what the weather makes of it is in it
         )
-        self._sensor = sensor
-        self._incidents.set_off(plan, sensor, self._sumo.time())
+        sensor = self._sensor(car)
+        pedals = SumoPedals(sumo, car, self.network, sensor, self._router, hands_off=True)
+        road = self.roads[car] = EgoRoad(self, sumo, car, sensor, pedals)
+        return EgoDrive(road, Driver(plan, pedals, self.step_s, own), road.now, take=pedals.take)
+
+    def set_out(self) -> list[str]:
+        """The cars without a cockpit that have set out in the last step, on roads that the network has for cars."""
+        sumo, edges = self._sumo, self.network.edges
+        cars = (each for each in sumo.departed() if sumo.vehicle_class(each) == "passenger")
+        return [car for car in cars if car not in self.roads and sumo.edge_of(car) in edges]
+
+    def forget(self, car: str) -> None:
+        """The cockpit of a car is no longer used; the car drives on."""
+        self.roads.pop(car, None)
+        self._coming.pop(car, None)
+
+    def _entered(self, car: str) -> EgoDrive:
+        """The drive of a car that has just entered the traffic."""
+        coming = self._coming.pop(car)
+        plan, edges, sumo = coming.plan, coming.edges, self._sumo
+        if sumo.route(car)[-1] != edges[-1]:  # a rerouter stands where it departs
+            sumo.set_route(car, edges)
+        now_s, is_first = sumo.time(), not self.roads
+        if is_first:
+            self._weather = plan.weather, now_s
+            self._forecast = Forecast(plan.weather, now_s, plan.settles_s)
+            self._surface.put(self._forecast.read(now_s))  # its first look is on the road of its weather
+        else:
+            weather, since_s = self._weather
+            plan = replace(plan, weather=weather_since(weather, now_s - since_s))
+        sumo.set_parameter(car, SPEED_GAIN, f"{profile(plan.driver).overtaking:g}")
+        sensor = self._sensor(car)
+        if is_first:
+            self._incidents.set_off(plan, sensor, now_s)
+        else:
+            self._incidents.join(plan, car, sensor, now_s)
         self._has_incidents = self._has_incidents or bool(plan.incidents)
         if self._incidents.take_changes():
             sensor.refresh()
         stops = plan.trip.via if plan.keeps_stops else ()
         if stops:
-            self._sumo.vehicle.setVia(EGO, stops)
-        pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router, stops)
-        road = _EgoRoad(self, self._sumo, sensor, pedals, round_)
+            sumo.vehicle.setVia(car, stops)
+        pedals = SumoPedals(sumo, car, self.network, sensor, self._router, stops)
+        road = self.roads[car] = EgoRoad(self, sumo, car, sensor, pedals, coming.round)
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
+
+    def _sensor(self, car: str) -> Sensor:
+        return Sensor(self._sumo, car, self.network, self.congestion, self._reported, self._emergency, self.step_s)
 
     @property
     def detours(self) -> Detours:
@@ -271,8 +352,8 @@ class World:
     def look_away(self) -> None:
         """From here on nobody asks what is around the ego or how dense the traffic is: only the drive counts."""
         self._looks_around = False
-        if self._sensor is not None:
-            self._sensor.looks_around = False
+        for road in self.roads.values():
+            road.sensor.looks_around = False
 
     def stage(self, incident: Incident) -> None:
         """Stages one more incident, whose times count like those of the others.
@@ -308,7 +389,7 @@ class World:
                 self._not_like_cars.add(vehicle)
             elif sumo.has_device(vehicle, BLUE_LIGHT):
                 self._emergency.add(vehicle)
-            if vehicle != EGO:
+            if vehicle not in self._coming:
                 self._wants[vehicle] = self._surface.wanted(vehicle)
                 if sumo.vehicle.getStops(vehicle, 1):
                     self._stopping[vehicle] = 0.0
@@ -349,23 +430,26 @@ class World:
                 "set ignore-route-errors in the .sumocfg"
             )
 
-    def _add_ego(self, edges: tuple[str, ...], driver: DriverProfile, trip: Trip, *, parked: bool) -> None:
+    def _add_car(
+        self, car: str, edges: tuple[str, ...], driver: DriverProfile, trip: Trip, *, parked: bool
+    ) -> None:
         sumo = self._sumo
-        sumo.copy_type(TEMPLATE_TYPE, EGO_TYPE)
+        of_its = EGO_TYPE if car == EGO else f"{EGO_TYPE}.{car}"
+        sumo.copy_type(TEMPLATE_TYPE, of_its)
         kind = sumo.type
-        kind.setVehicleClass(EGO_TYPE, "passenger")
-        kind.setLength(EGO_TYPE, 4.5)
-        kind.setMinGap(EGO_TYPE, driver.min_gap_m)
-        kind.setAccel(EGO_TYPE, driver.acceleration_mps2)
-        kind.setDecel(EGO_TYPE, driver.deceleration_mps2)
-        kind.setEmergencyDecel(EGO_TYPE, G_MPS2)
-        kind.setImperfection(EGO_TYPE, driver.imperfection)
-        kind.setTau(EGO_TYPE, max(driver.headway_s, self.step_s))
-        kind.setSpeedFactor(EGO_TYPE, 1.0)
-        kind.setSpeedDeviation(EGO_TYPE, 0.0)
-        kind.setActionStepLength(EGO_TYPE, self.step_s)
-        kind.setParameter(EGO_TYPE, "has.rerouting.device", "false")
-        sumo.add_route(EGO_TYPE, edges)
+        kind.setVehicleClass(of_its, "passenger")
+        kind.setLength(of_its, 4.5)
+        kind.setMinGap(of_its, driver.min_gap_m)
+        kind.setAccel(of_its, driver.acceleration_mps2)
+        kind.setDecel(of_its, driver.deceleration_mps2)
+        kind.setEmergencyDecel(of_its, G_MPS2)
+        kind.setImperfection(of_its, driver.imperfection)
+        kind.setTau(of_its, max(driver.headway_s, self.step_s))
+        kind.setSpeedFactor(of_its, 1.0)
+        kind.setSpeedDeviation(of_its, 0.0)
+        kind.setActionStepLength(of_its, self.step_s)
+        kind.setParameter(of_its, "has.rerouting.device", "false")
+        sumo.add_route(of_its, edges)
         if not parked and trip.from_m is not None:
             edge = self.network.edges[edges[0]]
             if trip.from_m > edge.length_m or trip.from_lane >= len(edge.lane_ids):
@@ -377,16 +461,16 @@ class World:
             mps = min(trip.from_kmh / KMH_PER_MPS, sumo.lane_speed(lane))
             number, from_m = lane.rpartition("_")[2], f"{trip.from_m:.2f}"
             sumo.add_vehicle(
-                EGO, EGO_TYPE, typeID=EGO_TYPE, departLane=number, departPos=from_m, departSpeed=f"{mps:.2f}"
+                car, of_its, typeID=of_its, departLane=number, departPos=from_m, departSpeed=f"{mps:.2f}"
             )
             return
         if not parked:
-            sumo.add_vehicle(EGO, EGO_TYPE, typeID=EGO_TYPE, departLane="best", departSpeed="max")
+            sumo.add_vehicle(car, of_its, typeID=of_its, departLane="best", departSpeed="max")
             return
         edge = self.network.edges[edges[0]]
         lane, at_m = edge.lane_ids[0].rpartition("_")[2], round(edge.length_m / 2, 2)
-        sumo.add_vehicle(EGO, EGO_TYPE, typeID=EGO_TYPE, departLane=lane, departPos=f"{at_m:.2f}", departSpeed="0")
-        sumo.set_stop(EGO, edge.edge_id, at_m, int(lane), FOR_GOOD_S, PARKING)
+        sumo.add_vehicle(car, of_its, typeID=of_its, departLane=lane, departPos=f"{at_m:.2f}", departSpeed="0")
+        sumo.set_stop(car, edge.edge_id, at_m, int(lane), FOR_GOOD_S, PARKING)
 
     def _trip_edges(self, trip: Trip) -> tuple[str, ...]:
         """The quickest route at free flow, through the trip's intermediate edges."""
@@ -412,20 +496,36 @@ class World:
         return tuple(edges)
 
 
-class _EgoRoad:
-    """The road of the ego: steps the world and reads the ego's state."""
+@dataclass(frozen=True, slots=True)
+class _Coming:
+    """A car that waits for a gap."""
+
+    plan: EgoPlan
+    edges: tuple[str, ...]
+    round: Round | None
+
+
+class EgoRoad:
+    """The road of an equipped car: steps the world, unless several share the step, and reads the car's state."""
 
     def __init__(
-        self, world: World, sumo: LibSumo, sensor: Sensor, pedals: SumoPedals, round_: Round | None = None
+        self,
+        world: World,
+        sumo: LibSumo,
+        car: str,
+        sensor: Sensor,
+        pedals: SumoPedals,
+        round_: Round | None = None,
     ) -> None:
-        """Takes over once the ego is on the road; with a round, it drives on at each destination."""
+        """Takes over once the car is on the road; with a round, it drives on at each destination."""
         self._world = world
         self._sumo = sumo
-        self._sensor = sensor
+        self._car = car
+        self.sensor = sensor
         self._pedals = pedals
         self.step_s = world.step_s
-        self._conflicts = Conflicts(sumo, EGO)
-        self._lookout = Lookout(sumo, EGO)
+        self._conflicts = Conflicts(sumo, car)
+        self._lookout = Lookout(sumo, car)
         self._look_steps = max(1, round(LOOK_S / self.step_s))
         self._steps = 0
         self._round = round_
@@ -437,10 +537,23 @@ class _EgoRoad:
         """The newest instant."""
 
     def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
+        self.apply()
+        return self.read(self._world.step(), hazard_lights=hazard_lights)
+
+    def apply(self) -> None:
+        """Sets the pedals for the next step of the world."""
         self._pedals.apply()
-        sampled = self._world.step()
-        with suppress(*self._sumo.refusals):
-            self._keep_goal()
+
+    def read(self, sampled: bool, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
+        """The instant after a step of the world, and its events.
+
+        Args:
+            sampled: whether the road ahead has to be read again.
+            hazard_lights: whether the car's are on.
+        """
+        if self._pedals.are_taken:
+            with suppress(*self._sumo.refusals):
+                self._keep_goal()
         end, events = self._mishaps()
         events += self._world.happened
         self._steps += 1
@@ -451,13 +564,13 @@ class _EgoRoad:
                     events += goes_on
                     sampled = bool(goes_on) or sampled
                 if sampled:
-                    self._sensor.refresh()
-                now = self._sensor.read(hazard_lights=hazard_lights, vehicle_count=self._world.vehicle_count)
+                    self.sensor.refresh()
+                now = self.sensor.read(hazard_lights=hazard_lights, vehicle_count=self._world.vehicle_count)
             except self._sumo.refusals:
                 end = EgoEnd.REMOVED
             else:
                 self.now = now
-                if self._sensor.looks_around and self._steps % self._look_steps == 0:
+                if self.sensor.looks_around and self._steps % self._look_steps == 0:
                     events += self._conflicts.look(now)
                 return now, events
         self.now = KnownInstant(replace(self.now.state, time_s=self._sumo.time(), end=end))
@@ -467,36 +580,43 @@ class _EgoRoad:
         return self._pedals.alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        return replace(self._lookout.look(), closed=self._world.closed())
+        """See ``Traffic.look``; in each car's own, the car itself is called ``ego``."""
+        seen, swapped = self._lookout.look(), {self._car: EGO, EGO: self._car}
+        if self._car != EGO:
+            named = (
+                replace(each, vehicle_id=swapped.get(each.vehicle_id, each.vehicle_id)) for each in seen.vehicles
+            )
+            seen = replace(seen, vehicles=tuple(named))
+        return replace(seen, closed=self._world.closed())
 
     def shapes(self) -> RoadShapes:
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
 
     def _keep_goal(self) -> None:
         """Goes on to the destination where a rerouter of the scenario's has given the ego another one."""
-        planned, now = self._sensor.route.edge_ids, self._sumo.route(EGO)
-        here = now[self._sumo.route_index(EGO)]
+        planned, now = self.sensor.route.edge_ids, self._sumo.route(self._car)
+        here = now[self._sumo.route_index(self._car)]
         if now[-1] != planned[-1] and here in planned:
-            self._sumo.set_route(EGO, planned[planned.index(here) :])
+            self._sumo.set_route(self._car, planned[planned.index(here) :])
 
     def _go_on(self, round_: Round) -> tuple[Event, ...]:
         """Sets the next destination near the present one, if there is a way to it, and says so. From a place
         without a way back, to which the driver was guided on request, it is set where one can last turn off."""
-        sumo, route = self._sumo, self._sensor.route
-        if sumo.edge_of(EGO).startswith(":"):
+        sumo, route = self._sumo, self.sensor.route
+        if sumo.edge_of(self._car).startswith(":"):
             return ()
         if route.edge_ids[-1] != self._goal:
             self._goal, self._beyond = route.edge_ids[-1], self._edges_beyond(round_)
         last = len(route.edge_ids) - 1 - self._beyond
-        here = sumo.route_index(EGO)
+        here = sumo.route_index(self._car)
         end_m = route.position_m(last, self._world.network.edges[route.edge_ids[last]].length_m)
-        if last < here or end_m - self._sensor.position_m > ONWARD_M:
+        if last < here or end_m - self.sensor.position_m > ONWARD_M:
             return ()
         way = round_.following(self._world.always_open, route.edge_ids[last], self._leg)
         self._leg += 1
         if not way:
             return ()
-        sumo.set_route(EGO, (*route.edge_ids[here:last], *way))
+        sumo.set_route(self._car, (*route.edge_ids[here:last], *way))
         edges = self._world.network.edges
         goal = edges[way[-1]].name or "the next destination"
         told = f"driver goes on to {goal}"
@@ -506,7 +626,7 @@ class _EgoRoad:
 
     def _edges_beyond(self, round_: Round) -> int:
         """How many edges at the end of the route are beyond the last from which a way leads on."""
-        for beyond, edge_id in enumerate(reversed(self._sensor.route.edge_ids)):
+        for beyond, edge_id in enumerate(reversed(self.sensor.route.edge_ids)):
             if round_.following(self._world.always_open, edge_id, 0):
                 return beyond
         return 0
@@ -521,15 +641,15 @@ class _EgoRoad:
         for collision in sumo.collisions():
             text = f"{collision.collider} hits {collision.victim}"
             events.append(Event(sumo.time(), "collision", text))
-            if EGO in (collision.collider, collision.victim):
-                if end is None and EGO not in self._world.arrived:
-                    sumo.vehicle.remove(EGO)  # where a collision takes nobody off the road for good
+            if self._car in (collision.collider, collision.victim):
+                if end is None and self._car not in self._world.arrived and self._pedals.are_taken:
+                    sumo.vehicle.remove(self._car)  # where a collision takes nobody off the road for good
                 end = EgoEnd.COLLIDED
         for vehicle in sumo.teleporting():
             events.append(Event(sumo.time(), "teleport", f"{vehicle} stood too long and is teleported"))
-            if vehicle == EGO and end is None:
+            if vehicle == self._car and end is None:
                 end = EgoEnd.TELEPORTED
-        if end is None and EGO in self._world.arrived:
+        if end is None and self._car in self._world.arrived:
             end = EgoEnd.ARRIVED
         return end, tuple(events)
 

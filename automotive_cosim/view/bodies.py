@@ -95,7 +95,6 @@ def faces(vehicle: SeenVehicle, lens: Lens, *, dark: bool) -> Iterator[Face]:
     """The faces of a vehicle or a person that can be seen from here, those behind first; then its lamps.
 
     Args:
-        vehicle: where it is.
         lens: from where it is seen.
         dark: whether everybody has lights on.
     """

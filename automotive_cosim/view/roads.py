@@ -70,7 +70,6 @@ class Areas:
 
     @classmethod
     def of(cls, areas: Sequence[tuple[int, Corners]]) -> Areas:
-        """Areas one by one."""
         corners = np.concatenate([each for _, each in areas]) if areas else np.empty((0, 2))
         return cls(tuple(cover for cover, _ in areas), tuple(len(each) for _, each in areas), corners)
 
@@ -174,7 +173,6 @@ class StreetMap:
     """All streets of a network by place; each is drawn out when it is first seen."""
 
     def __init__(self, shapes: RoadShapes, network: RoadNetwork) -> None:
-        """Indexes them."""
         self.left_hand = network.left_hand
         self.roads: Mapping[str, Road] = {road.edge_id: road for road in network.roads}
         self.lengths_m = network.junctions_m

@@ -125,9 +125,7 @@ class Scene:
 class Signed(Protocol):
     """Says what signs show."""
 
-    def shown(self, limit: Limit) -> Limit:
-        """The limit on the sign."""
-        ...
+    def shown(self, limit: Limit) -> Limit: ...
 
 
 class Sights:
@@ -137,8 +135,6 @@ class Sights:
         """Indexes it: 20 ms for three thousand lanes.
 
         Args:
-            shapes: its lanes.
-            network: its roads.
             signed: what a sign shows in a network that was moved to another country; None as it is.
         """
         self.of = shapes, network, signed

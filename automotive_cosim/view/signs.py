@@ -23,8 +23,6 @@ def board(kind: Board, figure: str, side: int, country: str) -> Image.Image:
     """A sign as its country has it; RGBA, a square of that side in pixels.
 
     Args:
-        kind: which sign.
-        figure: on a limit.
         side: pixels.
         country: ISO 3166-1; empty for the Vienna Convention's form.
     """

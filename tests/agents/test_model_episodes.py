@@ -14,8 +14,7 @@ from automotive_cosim.geo.earth import METRES_PER_DEGREE
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.interface import trace
 from automotive_cosim.models import ModelReply, make_model
-from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.estimates import estimates
+from automotive_cosim.run.episode import EpisodeSetup, estimates
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.trial import run_trial
 from automotive_cosim.tasking.sets import Suite

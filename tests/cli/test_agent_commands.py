@@ -45,7 +45,7 @@ def test_the_rule_model_is_named_for_what_it_is(cli):
         (("--geo", "wrnog"), "wrong"),
         (("--without", "gps,radar"), "part of an agent"),
         (("--memory", "no/such/folder/m"), "memory"),
-        (("--most-tokens", "0"), "whole number"),
+        (("--most", "tokens=0"), "whole number"),
     ],
 )
 def test_what_does_not_exist_is_told_in_one_line_and_leaves_nothing(cli, tmp_path, arguments, said):

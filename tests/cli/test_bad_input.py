@@ -38,6 +38,9 @@ def _assert_refused(ran, *words):
         (["--actions", "nowhere.jsonl"], ["nowhere.jsonl"]),
         (["--taks", "x"], ["--taks"]),
         (["surplus"], ["surplus"]),
+        (["--drive", "grid_june", "--no-gps"], ["--no-gps is about a task; omit it with --drive"]),
+        (["--errands"], ["--errands is about a drive; give --drive"]),
+        (["--drive", "grid_joon"], ["did you mean 'grid_june'"]),
     ],
 )
 def test_a_wrong_argument_is_one_line(cli, tmp_path, arguments, words):

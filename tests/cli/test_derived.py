@@ -16,24 +16,19 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.main import app
-from automotive_cosim.cli.options import DriveChanges, LimitSettings
+from automotive_cosim.cli.options import DriveChanges
 from automotive_cosim.doors.settings import A2aSettings, McpSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.episode.settings import EpisodeSettings
 from automotive_cosim.errors import UserError
-from automotive_cosim.exchange.settings import ExportFormats
-from automotive_cosim.formats.annotations import OneOf, Option
+from automotive_cosim.formats.annotations import OneOf, Option, option
 from automotive_cosim.formats.docs import inherited_field_docs
-from automotive_cosim.formats.options import option
-from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
+from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.proof.settings import ProofSettings
-from automotive_cosim.publish.settings import VerifySettings
-from automotive_cosim.report.settings import CompareSettings, PlaybackSettings, ScreensSettings
+from automotive_cosim.report.settings import CompareSettings
 from automotive_cosim.run.settings import (
-    BenchSettings,
     Budget,
     EvaluationSettings,
-    PlanSettings,
     RunSettings,
     SingleSettings,
 )
@@ -43,31 +38,21 @@ from tests.laws import over
 
 COMMANDS = (
     ("run", EpisodeSettings, {"seed"}),
-    ("run", LimitSettings, set()),
     ("run", SingleSettings, set()),
-    ("drive", LimitSettings, set()),
-    ("drive", DriveChanges, set()),
+    ("run", DriveChanges, set()),
     ("eval", EvaluationSettings, {each.name for each in TABLE}),
     ("eval", RunSettings, set()),
-    ("eval", PlanSettings, set()),
     ("eval", Budget, set()),
     ("eval", ExecutorSettings, set()),
-    ("eval", LimitSettings, {"most_wall_seconds"}),
     ("search", SearchOrder, set()),
     ("search", SearchSettings, set()),
     ("search", ExecutorSettings, set()),
     ("scenarios import", ImportOptions, set()),
-    ("scenarios download", DownloadLimits, {"tries"}),
     ("tasks validate", ProofSettings, set()),
     ("mcp", McpSettings, set()),
     ("a2a", A2aSettings, set()),
     ("serve", ServeSettings, set()),
-    ("bench", BenchSettings, set()),
-    ("export", ExportFormats, set()),
     ("compare", CompareSettings, set()),
-    ("replay", PlaybackSettings, set()),
-    ("show screens", ScreensSettings, set()),
-    ("publish verify", VerifySettings, set()),
 )
 """Commands, what they can be told, and the fields of it that are no options."""
 

@@ -90,7 +90,7 @@ def test_an_agent_that_fails_is_judged_and_told(cli, tmp_path):
         (("--agents", "t3a", "--pictures", "some"), "no choice of pictures"),
         (("--agents", "t3a", "--workers", "0"), "whole number"),
         (("--agents", "t3a", "--executor", "rya"), "did you mean 'ray'?"),
-        (("--agents", "t3a", "--ray-send", "."), "--ray-send requires --executor ray"),
+        (("--agents", "t3a", "--executor", "ray:"), "no executor named 'ray:'"),
         (("--agents", "t3a", "--scenarios", ""), "--scenarios is empty"),
         (("--plan", "none.toml"), "none.toml"),
     ],

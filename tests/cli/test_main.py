@@ -90,9 +90,9 @@ OTHERS = {
     ("a2a",), ("mcp",), ("serve",), ("measures",), ("report",), ("show", "screens"), ("show", "schema"),
     ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
     ("scenarios", "download"), ("publish", "bundle"), ("publish", "leaderboard"),
-    ("export",),
+    ("export",), ("keep",),
 }  # fmt: skip
-"""Commands whose result is a file, or a server."""
+"""Commands whose result is a file, a server, or traffic that is kept."""
 
 
 @pytest.mark.parametrize("command", list(every_command()), ids=" ".join)

@@ -179,6 +179,6 @@ def test_an_agent_that_gives_no_action_is_told_with_the_reason(cli, tmp_path, ac
     (tmp_path / f"{name}.py").write_text(
         f"class Agent:\n    def reset(self, goal): ...\n    def act(self, seen): {act}\n"
     )
-    ran = cli("run", *more, *GRID, "--agent", f"{name}:Agent", "--out", "out", "--most-steps", "2")
+    ran = cli("run", *more, *GRID, "--agent", f"{name}:Agent", "--out", "out", "--most", "steps=2")
     (line,) = [line for line in getattr(ran, told).splitlines() if said in line]
     assert "gave no action in 2 steps, at first: " in line

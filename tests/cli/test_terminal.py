@@ -215,13 +215,13 @@ def test_no_command_ends_with_a_traceback_whatever_its_output_and_names(tmp_path
 
 
 def test_what_loads_is_told_before_anything_is_imported(tmp_path: Path) -> None:
-    (tmp_path / "gymnasium.py").write_text("raise SystemExit(9)\n", encoding="utf-8")
+    (tmp_path / "typer.py").write_text("raise SystemExit(9)\n", encoding="utf-8")
     for words, told in (
         (["run"], "loading tasks and agents\n"),
         (["--debug", "scenarios", "import", "x.osm"], "loading the importer\n"),
         (["scenarios", "list"], ""),
         (["run", "--help"], ""),
-        (["drive", "run"], "loading drives and agents\n"),
+        (["compare", "run"], "loading results\n"),
     ):
         code = "from automotive_cosim_main import main; main()"
         done = subprocess.run([sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, text=True)

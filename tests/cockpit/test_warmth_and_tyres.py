@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.sensing import display_contrast, seat_after
 from automotive_cosim.cockpit.signals import HMI, SEAT, TYRE
 from automotive_cosim.cockpit.tyres import Tyres
-from automotive_cosim.cockpit.warmth import display_contrast, seat_after
 from automotive_cosim.contracts import Surroundings
 
 

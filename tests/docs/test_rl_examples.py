@@ -18,8 +18,10 @@ FOLDER = TOP / "docs/examples/rl"
 PYTHON = os.environ.get("AUTOMOTIVE_COSIM_RL", sys.executable)
 HERE, LEARNS = "async_vector.py", "ten_minutes.py"
 NEEDS = {
+    "cleanrl_fleet.py": "pettingzoo",
     "cleanrl_loop.py": "torch",
     "rllib_ppo.py": "torch, ray.rllib",
+    "sb3_fleet.py": "pettingzoo, stable_baselines3",
     "sb3_ppo.py": "stable_baselines3",
     "torchrl_rollout.py": "torchrl",
 }

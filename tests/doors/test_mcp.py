@@ -159,7 +159,13 @@ def test_two_assistants_over_http_get_the_command_lines_trace(trace: str, progra
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    program(sys.executable, *SERVER, "--http", f"127.0.0.1:{port}", "--token", "our-token")
+    program(
+        sys.executable,
+        *SERVER,
+        "--http",
+        f"127.0.0.1:{port}",
+        env={**os.environ, "AUTOMOTIVE_COSIM_MCP_TOKEN": "our-token"},
+    )
 
     def answers() -> bool:
         with socket.socket() as tried:

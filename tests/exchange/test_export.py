@@ -270,7 +270,7 @@ def test_trajectories_for_ssam_pass_through_the_recorded_places(recording, tmp_p
 def test_an_episode_is_exported_by_command(tmp_path, simulations, cli):
     setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", agent="oracle", model="none")
     run_trial(setup, make_agent("oracle"), [RoadRecorder(tmp_path / "kept", setup.about)], simulations=simulations)
-    told = cli("export", tmp_path / "kept", "--openscenario", "1.3", "--opendrive", "--fcd", "--csv", "--ssam")
+    told = cli("export", tmp_path / "kept", "openscenario-1.3", "opendrive", "fcd", "csv", "ssam")
     assert told.code == 0, told.err
     folder = tmp_path / "kept" / "exchange"
     scenario = ET.parse(folder / "scenario.xosc").getroot()

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.errors import SetupError, UnknownNameError
 from automotive_cosim.exchange import needs
-from automotive_cosim.exchange.settings import ExportFormats
 
 
 def test_all_that_is_missing_is_told_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -17,9 +16,9 @@ def test_all_that_is_missing_is_told_at_once(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(needs, "find_spec", lambda name: None)
     monkeypatch.setattr(needs, "program", missing)
-    needs.check_formats(ExportFormats(openscenario="1.3"))
+    needs.check_formats(["openscenario-1.3"])
     with pytest.raises(SetupError) as told:
-        needs.check_formats(ExportFormats(opendrive=True, osi=True, parquet=True))
+        needs.check_formats(["opendrive", "osi", "parquet"])
     assert told.value.args == ("OpenDRIVE: no netconvert", needs.OSI, needs.PARQUET)
-    with pytest.raises(UserError, match=r"give one of 1\.2, 1\.3"):
-        needs.check_formats(ExportFormats(openscenario="2.0"))
+    with pytest.raises(UnknownNameError, match=r"openscenario-1\.3"):
+        needs.check_formats(["openscenario-2.0"])

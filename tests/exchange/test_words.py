@@ -11,12 +11,11 @@ import pytest
 import sumolib
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.exchange.catalogs import Catalogs, _copied
+from automotive_cosim.exchange.catalogs import CARRIED, DIFFERENT, REFUSED, Catalogs, _copied, table
 from automotive_cosim.exchange.incoming import import_openscenario, road_network, scenario_text
 from automotive_cosim.exchange.places import RoadPlaces
 from automotive_cosim.exchange.storyboard import read_story
 from automotive_cosim.exchange.tree import XmlElement, read_tree
-from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
 from automotive_cosim.scenarios import load, open_scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations

@@ -27,7 +27,7 @@ from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import extract
 from automotive_cosim.publish import archive
-from automotive_cosim.report.playback import open_picture
+from automotive_cosim.report.page import open_picture
 from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.run.road import read_road
 from automotive_cosim.tasking.catalogue import Catalogue
@@ -243,7 +243,7 @@ KEPT_IN = {
     "osm/extract.py": "a process with limits",
     "osm/overpass_json.py": "sixty-four bytes, to tell a format",
     "publish/archive.py": "a process with limits; packs",
-    "report/playback.py": "the pixels are counted first",
+    "report/page.py": "the pixels are counted first",
     "run/road_recorder.py": "writes",
     "models/remote.py": "a body, up to its bound",
     "geo/basics.py": "a table of this package",

@@ -10,9 +10,8 @@ import tzfpy
 
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.basics import Basics, basics_of, rows
-from automotive_cosim.geo.borders import country_at
 from automotive_cosim.geo.context import GeoContext
-from automotive_cosim.geo.place import LAW_OF, Atlas
+from automotive_cosim.geo.place import LAW_OF, Atlas, country_at
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.osm.country import LEFT_HAND
 from tests.laws import over
@@ -136,6 +135,7 @@ def test_a_town_anywhere_has_its_basics(
     law = context.place.law
     assert law is not None
     side = "left" if code in LEFT.split() else "right"
+    assert len(context.text(60)) <= 4 * 60 + 1
     lines = context.text().splitlines()
     assert f"Country: traffic keeps {side}; emergency call {', '.join(law.emergency)}" in lines
     unit = "mph" if code in MILES.split() else "km/h"

@@ -15,7 +15,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, couple
-from automotive_cosim.geo.borders import NEAR_BORDER_M
+from automotive_cosim.geo.place import NEAR_BORDER_M
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
 

@@ -71,9 +71,7 @@ def test_times_are_the_places_own(time: str, local: str) -> None:
         (("0", "0", "--time", "yesterday"), "not a date and time"),
         (("0", "0", "--weather", "4"), "weather code 4 is not one of"),
         (("0", "0", "--visibility", "40"), "--visibility requires --weather"),
-        (("48.8", "2.3", "--draw", "1", "--weather", "3"), "omit --draw"),
-        (("48.8", "2.3", "--draw=-1"), "is not a seed"),
-        (("40", "-30", "--draw", "1"), "no climate is known"),
+        (("48.8", "2.3", "--online", "--weather", "3"), "omit --online"),
         (("0", "0", "--rules", "/no/such/folder"), "is not a folder"),
         (("0", "0", "--rules", str(Path(__file__).parent)), "has no rule files"),
         (("0", "0", "--road", "spaceway"), "no road class named 'spaceway'"),
@@ -91,8 +89,6 @@ def test_bad_input_is_one_line(arguments: tuple[str, ...], message: str) -> None
         ("--speed", "nan"),
         ("--speed", "-1"),
         ("--speed", "inf"),
-        ("--budget", "-1"),
-        ("--budget", "0"),
         ("--weather", "45", "--visibility", "-5"),
         ("--weather", "45", "--visibility", "nan"),
     ],
@@ -109,29 +105,21 @@ def test_the_poles_and_the_sea_have_a_context() -> None:
         assert "Default limit: unknown" in _run(*arguments, "--time", "2026-12-21T12:00")
 
 
-def test_own_rules_and_a_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_own_rules(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "GE.toml").write_text(
         '[jurisdiction]\ncode = "GE"\nname = "Sakartvelo"\nstatus = "knowledge"\ndriving_side = "right"\n'
         'speed_unit = "km/h"\ntemperature_unit = "C"\nemergency = ["112"]\n',
         encoding="utf-8",
     )
-    text = _run("41.72", "44.79", "--rules", str(tmp_path), "--budget", "60")
+    text = _run("41.72", "44.79", "--rules", str(tmp_path))
     assert text.startswith("Place: Sakartvelo (GE)")
-    assert len(text) <= 4 * 60 + 1
-
-
-def test_weather_may_be_drawn_by_seed() -> None:
-    place = ("48.82", "2.34", "--time", "2026-01-20T10:00")
-    first, again, other = (_run(*place, "--draw", seed) for seed in ("1", "1", "2"))
-    assert first == again != other
-    assert "Weather: unknown" not in first
 
 
 def test_online_without_a_service_falls_back_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("no_proxy", "*")
     monkeypatch.setattr(OpenMeteo.__init__, "__defaults__", ("http://127.0.0.1:9/", 1.0))
     place = ("48.82", "2.34", "--time", "2026-01-20T10:00")
-    result = CliRunner().invoke(APP, [*place, "--online", "--draw", "7"], catch_exceptions=False)
+    result = CliRunner().invoke(APP, [*place, "--online"], catch_exceptions=False)
     assert "Open-Meteo cannot be reached" in result.stderr
-    assert "drawn from the climate of Paris (Montsouris) (seed 7) instead" in result.stderr
-    assert result.stdout == _run(*place, "--draw", "7")
+    assert "drawn from the climate of Paris (Montsouris) (seed 0) instead" in result.stderr
+    assert "Weather: unknown" not in result.stdout

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from automotive_cosim.cli import context
 from automotive_cosim.contracts import DrivingState, GpsFix
-from automotive_cosim.errors import GeoDataError
+from automotive_cosim.errors import UserError
 from automotive_cosim.geo.basics import basics_of, rows
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
@@ -61,7 +61,7 @@ def test_the_refusal_is_the_one_shown(folder: Path) -> None:
     path = folder / "my_rules" / "FR-tours.toml"
     path.write_text(_block("toml").replace('topic = "limit"', 'topic = "limt"'), encoding="utf-8")
     arguments = _block("console").removeprefix("$ automotive-cosim show context ").split()
-    with pytest.raises(GeoDataError) as error:
+    with pytest.raises(UserError) as error:
         CliRunner().invoke(APP, arguments, catch_exceptions=False)
     assert f"error: {error.value}\n" == _block("text", 1)
 

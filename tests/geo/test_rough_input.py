@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from automotive_cosim.contracts import DrivingState, GpsFix, Limit, LimitSource, Weather
-from automotive_cosim.errors import GeoDataError, UserError
+from automotive_cosim.errors import UserError
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import Atlas
@@ -142,7 +142,7 @@ def test_a_damaged_file_is_refused_with_one_line_or_still_well_formed(tmp_path: 
     path.write_text("\n".join(lines), encoding="utf-8")
     try:
         read_jurisdiction(path)
-    except GeoDataError as error:
+    except UserError as error:
         assert all(line.startswith(str(path)) for line in str(error).splitlines())
 
 
@@ -182,7 +182,7 @@ def test_any_value_in_any_field_of_a_rule_is_read_or_refused(tmp_path: Path, fie
         assert rule_read.topic in TOPICS
         assert rule_read.text.isprintable()
         assert rule_read.cases
-    except GeoDataError as error:
+    except UserError as error:
         line = rf"{re.escape(str(path))}( line \d+ \[\[rules\]\]|: and \d+ more$)"
         assert all(re.match(line, problem) for problem in str(error).splitlines())
 

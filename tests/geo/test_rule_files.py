@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.contracts import DrivingState, GpsFix, Weather
-from automotive_cosim.errors import GeoDataError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.geo.basics import basics_of, rows
 from automotive_cosim.geo.locate import Geo
@@ -146,7 +146,7 @@ def test_a_wrong_rule_is_refused_with_file_line_and_reason(
 ) -> None:
     assert wrong in RULE
     path = _write(tmp_path, HEAD + RULE.replace(wrong, right))
-    with pytest.raises(GeoDataError) as error:
+    with pytest.raises(UserError) as error:
         read_jurisdiction(path)
     assert f"{path} line {line} [[rules" in str(error.value)
     assert reason in str(error.value)
@@ -156,7 +156,7 @@ def test_a_wrong_rule_is_refused_with_file_line_and_reason(
 def test_every_problem_of_a_file_is_told_on_a_line_of_its_own(tmp_path: Path) -> None:
     text = HEAD.replace('"left"', "1") + RULE.replace('"limit"', '"limt"').replace("30", "-30") + "colour = 3\n"
     path = _write(tmp_path, text)
-    with pytest.raises(GeoDataError) as error:
+    with pytest.raises(UserError) as error:
         read_jurisdiction(path)
     assert [line.split()[2] for line in str(error.value).splitlines()] == ["6", "13", "15", "20"]
 
@@ -184,7 +184,7 @@ def test_a_file_is_read_again_once_it_has_changed_and_not_before(tmp_path: Path)
     ],
 )
 def test_a_wrong_file_is_refused(tmp_path: Path, text: str, reason: str) -> None:
-    with pytest.raises(GeoDataError) as error:
+    with pytest.raises(UserError) as error:
         read_jurisdiction(_write(tmp_path, text))
     assert reason in str(error.value)
 
@@ -232,13 +232,13 @@ def test_a_users_country_stands_before_the_shipped_one(tmp_path: Path) -> None:
 
 
 def test_a_users_folder_must_exist_and_hold_whole_countries(tmp_path: Path) -> None:
-    with pytest.raises(GeoDataError, match="is not a folder"):
+    with pytest.raises(UserError, match="is not a folder"):
         Atlas([tmp_path / "none"])
     _write(tmp_path, HEAD, "YY.toml")
-    with pytest.raises(GeoDataError, match="not the name of the file"):
+    with pytest.raises(UserError, match="not the name of the file"):
         Atlas([tmp_path]).country("YY")
     _write(tmp_path, TOWN, "ZZ-town.toml")
-    with pytest.raises(GeoDataError, match=r"no ZZ\.toml"):
+    with pytest.raises(UserError, match=r"no ZZ\.toml"):
         Atlas([tmp_path]).country("ZZ")
 
 

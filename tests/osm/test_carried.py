@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.geo.place import shipped
 from automotive_cosim.osm import extract, network
 from automotive_cosim.osm.area import Area
@@ -96,5 +96,5 @@ def test_a_crop_holds_what_lies_within(formats: dict[str, Path]) -> None:
     assert {ref for way in cropped.ways for ref in way.nodes} == set(cropped.nodes)
     assert whole.crop(whole.bounds) == whole
     assert cropped.crop(half) == cropped
-    with pytest.raises(ImportMapError, match="no road in the --bbox"):
+    with pytest.raises(UserError, match="no road in the --bbox"):
         whole.crop(Area(10.0, 10.0, 11.0, 11.0))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.errors import ImportMapError, SetupError, install_hint
+from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.osm import extract
 from automotive_cosim.osm.roads import id_of, way_of
 from automotive_cosim.osm.towns import is_dense, town_cells
@@ -129,7 +129,7 @@ def test_the_access_key_nearest_to_cars_decides(tags: dict[str, str], may: bool,
     if may:
         assert len(extract.read(file).ways) == 1
     else:
-        with pytest.raises(ImportMapError, match="no roads for cars"):
+        with pytest.raises(UserError, match="no roads for cars"):
             extract.read(file)
 
 
@@ -174,7 +174,7 @@ def test_a_way_clipped_by_the_extract_keeps_its_longest_stretch(tmp_path: Path) 
 def test_what_is_no_map_is_refused_on_one_line(content: bytes, says: str, tmp_path: Path) -> None:
     file = tmp_path / "map.osm"
     file.write_bytes(content)
-    with pytest.raises(ImportMapError, match=says) as refused:
+    with pytest.raises(UserError, match=says) as refused:
         extract.read(file)
     assert "map.osm" in str(refused.value)
     assert "\n" not in str(refused.value)
@@ -186,14 +186,14 @@ def test_a_cut_off_file_is_refused(ending: str, share: float, formats: dict[str,
     whole = formats[ending].read_bytes()
     cut = tmp_path / f"cut.osm{ending}"
     cut.write_bytes(whole[: int(len(whole) * share)])
-    with pytest.raises(ImportMapError, match=r"truncated") as refused:
+    with pytest.raises(UserError, match=r"truncated") as refused:
         extract.read(cut)
     assert "\n" not in str(refused.value)
 
 
 def test_a_missing_file_and_a_folder_are_refused(tmp_path: Path) -> None:
     for path in (tmp_path / "nowhere.osm", tmp_path):
-        with pytest.raises(ImportMapError, match="give the path of an OSM extract"):
+        with pytest.raises(UserError, match="give the path of an OSM extract"):
             extract.read(path)
 
 
@@ -263,7 +263,7 @@ def test_latin_letters_are_read_if_the_file_says_so(tmp_path: Path) -> None:
     encoding = "ISO-8859-1"
     road = NODES + ROAD.format(1, "Straße")
     assert _named(tmp_path, road, f'<?xml version="1.0" encoding="{encoding}"?>', encoding) == {1: "Straße"}
-    with pytest.raises(ImportMapError, match="save it as UTF-8"):
+    with pytest.raises(UserError, match="save it as UTF-8"):
         _named(tmp_path, road, '<?xml version="1.0" encoding="UTF-8"?>', encoding)
 
 

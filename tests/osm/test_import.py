@@ -15,7 +15,7 @@ import pytest
 from shapely import Polygon
 
 from automotive_cosim.contracts import GroundKind, LimitSource
-from automotive_cosim.errors import ImportMapError, SetupError, install_hint
+from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.geo.place import shipped
 from automotive_cosim.osm import demand, extract
 from automotive_cosim.osm.agreement import of_edges
@@ -224,13 +224,13 @@ def test_a_folder_is_replaced_only_if_asked_and_only_a_scenarios(
     other.mkdir()
     (other / "love.txt").write_text("dear")
     for options in (quick, replace(quick, replaces=True)):
-        with pytest.raises(ImportMapError, match="--out"):
+        with pytest.raises(UserError, match="--out"):
             import_map(formats[""], other, options)
     assert _contents(other) == {"love.txt": b"dear"}
     scenario = tmp_path / "scenario"
     shutil.copytree(imported[0], scenario)
     (scenario / "note.txt").write_text("old")
-    with pytest.raises(ImportMapError, match="--force"):
+    with pytest.raises(UserError, match="--force"):
         import_map(formats[""], scenario, quick)
     import_map(formats[""], scenario, replace(quick, replaces=True))
     assert not (scenario / "note.txt").exists()
@@ -238,9 +238,7 @@ def test_a_folder_is_replaced_only_if_asked_and_only_a_scenarios(
 
 
 @pytest.mark.sumo
-@pytest.mark.parametrize(
-    "failure", [KeyboardInterrupt(), OSError(28, "No space left on device"), ImportMapError("no")]
-)
+@pytest.mark.parametrize("failure", [KeyboardInterrupt(), OSError(28, "No space left on device"), UserError("no")])
 def test_a_failed_import_leaves_nothing_and_harms_nothing(
     failure: BaseException,
     formats: dict[str, Path],
@@ -258,7 +256,7 @@ def test_a_failed_import_leaves_nothing_and_harms_nothing(
 
     monkeypatch.setattr(demand, "write", fail)
     for options, target in ((replace(quick, replaces=True), out), (quick, tmp_path / "new")):
-        with pytest.raises((ImportMapError, KeyboardInterrupt)):
+        with pytest.raises((UserError, KeyboardInterrupt)):
             import_map(formats[""], target, options)
     assert _contents(out) == before
     assert [path.name for path in tmp_path.iterdir()] == ["village"]
@@ -286,7 +284,7 @@ def test_however_often_it_is_terminated_an_import_leaves_nothing(
 def test_a_place_that_cannot_be_written_is_refused(formats: dict[str, Path], tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     for out in (tmp_path / "file" / "village", tmp_path / "missing" / "village"):
-        with pytest.raises(ImportMapError, match="choose another --out") as refused:
+        with pytest.raises(UserError, match="choose another --out") as refused:
             import_map(formats[""], out)
         assert "\n" not in str(refused.value)
 
@@ -305,7 +303,7 @@ def test_a_place_that_cannot_be_written_is_refused(formats: dict[str, Path], tmp
     ],
 )
 def test_an_impossible_option_is_refused(options: ImportOptions, formats: dict[str, Path], tmp_path: Path) -> None:
-    with pytest.raises(ImportMapError) as refused:
+    with pytest.raises(UserError) as refused:
         import_map(formats[""], tmp_path / "out", options)
     assert "\n" not in str(refused.value)
     assert not list(tmp_path.iterdir())
@@ -318,7 +316,7 @@ def test_a_map_without_a_drivable_road_is_refused(tmp_path: Path) -> None:
         '<osm version="0.6"><node id="1" lat="48" lon="2"/><node id="2" lat="48" lon="2"/>'
         '<way id="1"><nd ref="1"/><nd ref="2"/><tag k="highway" v="primary"/></way></osm>'
     )
-    with pytest.raises(ImportMapError, match=r"no drivable road|larger extract"):
+    with pytest.raises(UserError, match=r"no drivable road|larger extract"):
         import_map(file, tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["dot.osm"]
 
@@ -368,7 +366,7 @@ def test_a_map_over_the_180th_meridian_is_refused_with_the_cure(
     text = re.sub(r'lon="(18[0-9.]+)"', lambda lon: f'lon="{float(lon[1]) - 360:.7f}"', made.xml())
     source = tmp_path / "fiji.osm"
     source.write_text(text, encoding="utf-8")
-    with pytest.raises(ImportMapError, match=r"180th meridian.*--bbox 0,-90,180,90"):
+    with pytest.raises(UserError, match=r"180th meridian.*--bbox 0,-90,180,90"):
         import_map(source, tmp_path / "out")
 
 

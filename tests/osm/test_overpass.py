@@ -13,11 +13,10 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim.cli.scenarios import app
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.osm import extract
 from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, download, query
-from automotive_cosim.osm.settings import DownloadLimits
+from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, DownloadLimits, download, query
 
 AREA = Area(1.58, 48.29, 1.64, 48.32)
 NOTE = "The data included in this document is from www.openstreetmap.org. The data is made available under ODbL."
@@ -144,7 +143,7 @@ def test_what_is_no_whole_map_is_told_and_leaves_nothing(
 ) -> None:
     server.answers = [answer]
     limits = DownloadLimits(timeout_s=0.3, tries=2, size_mb=0.1)
-    with pytest.raises(ImportMapError, match=said) as error:
+    with pytest.raises(UserError, match=said) as error:
         download(server.url, AREA, tmp_path / "map.osm", limits, sleep=lambda _s: None)
     assert "\n" not in str(error.value)
     assert len(server.asked) == asked
@@ -166,9 +165,9 @@ def test_what_is_no_whole_map_is_told_and_leaves_nothing(
     ],
 )
 def test_what_cannot_be_asked_for(endpoint: str, bbox: str, said: str, tmp_path: Path) -> None:
-    with pytest.raises(ImportMapError, match=said):
+    with pytest.raises(UserError, match=said):
         download(endpoint, Area.parse(bbox), tmp_path / "map.osm", DownloadLimits(tries=1))
-    with pytest.raises(ImportMapError, match="exists"):
+    with pytest.raises(UserError, match="exists"):
         download("http://127.0.0.1:9/", AREA, tmp_path)
 
 

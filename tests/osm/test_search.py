@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from automotive_cosim.errors import ImportMapError
+from automotive_cosim.errors import UserError
 from automotive_cosim.geo.place import Place
 from automotive_cosim.osm import importer
 from automotive_cosim.osm.importer import HALTED_SHARE_AIM, SCALE_MIN, SHORT_TRIAL_S, TRIALS
@@ -70,7 +70,7 @@ def test_the_search_is_bounded_and_ends_near_the_answer(scale_max: float, monkey
 
 def test_what_never_flows_is_refused_in_bounded_time(monkeypatch: pytest.MonkeyPatch) -> None:
     searched = Searched(jams_above(0.01), monkeypatch, ImportOptions(name="x"))
-    with pytest.raises(ImportMapError, match=r"even at a scale of 0\.05 .*halted"):
+    with pytest.raises(UserError, match=r"even at a scale of 0\.05 .*halted"):
         searched.search.run()
     assert len(searched.trials) <= TRIALS
 

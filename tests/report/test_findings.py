@@ -8,7 +8,7 @@ from PIL import Image
 
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.report import findings
-from automotive_cosim.report.case import contrast
+from automotive_cosim.report.evaluation import contrast
 from automotive_cosim.report.results import Results
 from automotive_cosim.report.stats import clustered_mean
 from automotive_cosim.run.coverage import Coverage

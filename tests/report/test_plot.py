@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.report.plot import Plot
-from automotive_cosim.report.speedaxis import SpeedAxis
+from automotive_cosim.report.plot import Plot, SpeedAxis
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.timeline import Sample

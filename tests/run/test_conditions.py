@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from automotive_cosim.cli import drive, evaluate, run
+from automotive_cosim.cli import evaluate, run
 from automotive_cosim.doors.shared import conditions_of, takes_conditions
 from automotive_cosim.episode.conditions import INPUTS, TABLE, Condition, Conditions
 from automotive_cosim.errors import UserError
@@ -44,7 +44,7 @@ def test_a_condition_reaches_jobs_ids_rows_tables_and_columns(condition: Conditi
 @over(TABLE)
 def test_a_condition_has_help_an_option_of_each_command_and_a_column(condition: Condition) -> None:
     assert condition.help.endswith(".")
-    for command in (run.run, drive.drive, evaluate.evaluate):
+    for command in (run.run, evaluate.evaluate):
         assert condition.name in inspect.signature(command).parameters
     assert condition.words.heading in COLUMNS
     assert condition.words.heading in DRIVE_COLUMNS

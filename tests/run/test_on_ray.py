@@ -231,7 +231,7 @@ def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(progr
     code = "from automotive_cosim.cli.main import main; main()"
     arguments = ("--agents", "mine:Slow", "--scenarios", "grid", "--repeats", "3", "--out", "../e", "--json")
     arguments += ("--tasks", "own_fan", "--tasks-from", "tasks")
-    far = ("--executor", "ray", "--workers", "1", "--ray-send", ".")
+    far = ("--executor", "ray:.", "--workers", "1")
     process = program(
         sys.executable, "-c", code, "eval", *arguments, *far, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         env=os.environ | {"RAY_TMPDIR": str(ray_folder), MARK: "own"},

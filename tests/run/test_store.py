@@ -5,9 +5,16 @@ import sys
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.own_code import own_code
 from automotive_cosim.run.row import JobRow
-from automotive_cosim.run.store import opened, read_manifest, read_rows, read_trace, trace_file, write_trace
+from automotive_cosim.run.store import (
+    opened,
+    own_code,
+    read_manifest,
+    read_rows,
+    read_trace,
+    trace_file,
+    write_trace,
+)
 
 PLAN = {"agents": ["oracle"]}
 

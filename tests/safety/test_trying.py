@@ -118,7 +118,6 @@ def test_without_an_agent_as_much_comes_due_as_a_silent_one_misses(simulations: 
 def test_what_cannot_come_about_is_said_before_with_how_to_mend_it(
     tmp_path: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(due, "TRIES", 2)
     monkeypatch.setattr(due, "MENDS", (("minutes", 2.4),))
     fixed = {"minutes": 2.0, "coarse": True, "drive": "grid_june", "stage_s": 30.0}
     space, none = (
@@ -130,13 +129,13 @@ def test_what_cannot_come_about_is_said_before_with_how_to_mend_it(
     )
     asked = make_plan({"agents": ["silent"], "trials": [as_json(trial_of(space.nominal))]})
     screen = due.DueScreen(space, asked, simulations, tmp_path)
-    (line,) = screen.check(0)
+    (line,) = screen.check()
     assert line.startswith(
-        "grid_june, tractor: nothing came due in 2 drives without an agent: it never came (2); nor with minutes 2.4"
+        "grid_june, tractor: nothing came due in 1 drive without an agent: it never came (1); nor with minutes 2.4"
     )
     assert screen.is_due(space.nominal)
     again = due.DueScreen(space, asked, simulations, tmp_path)
-    assert list(again.check(0)) == [line]
+    assert list(again.check()) == [line]
     assert again.tried == 0, "what was tried is kept"
-    with pytest.raises(UserError, match="nothing comes due anywhere"):
-        list(due.DueScreen(none, asked, simulations, tmp_path).check(0))
+    with pytest.raises(UserError, match="nothing comes due in this space"):
+        list(due.DueScreen(none, asked, simulations, tmp_path).check())

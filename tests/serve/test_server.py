@@ -224,6 +224,6 @@ def test_the_command_refuses_in_one_line(tmp_path: Path, serving: Serving) -> No
         ([record], 0, True, "give a folder of records"),
     ):
         with pytest.raises(UserError, match=why):
-            serve(folders, port=port, play=play)
+            serve(folders, http=("127.0.0.1", port), play=play)
     with pytest.raises(UserError, match="cannot listen"):
-        serve([tmp_path], host="no.such.host.invalid")
+        serve([tmp_path], http=("no.such.host.invalid", 0))

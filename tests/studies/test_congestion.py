@@ -182,7 +182,6 @@ def test_sumos_outputs_are_read_against_the_usual_limit(tmp_path: Path) -> None:
         ({"incidents": ("advice share=1",)}, "kind in --incident"),
         ({"minutes": 7.0}, "multiple of 5"),
         ({"minutes": 10.0, "demand": (1.0, 2.0, 1.0)}, "--demand has 3 periods"),
-        ({"corridor": "venue"}, "avenue"),
         ({"seeds": ()}, "--seeds is empty"),
     ],
 )

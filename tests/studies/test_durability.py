@@ -81,7 +81,7 @@ class Command:
     name: str = "out"
 
 
-EVAL = ("eval", "--scenarios", "grid", "--tasks", "hvac_fan_max", "--most-steps", "4", "--out", "OUT")
+EVAL = ("eval", "--scenarios", "grid", "--tasks", "hvac_fan_max", "--most", "steps=4", "--out", "OUT")
 COMMANDS = {
     "eval": Command((*EVAL, "--agents", "oracle,no-op", "--pictures", "none"), rows(), 24),
     "eval with pictures": Command((*EVAL, "--agents", "oracle", "--pictures", "all"), rows_and_pictures, 20),

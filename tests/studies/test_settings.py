@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.studies.calibration.settings import CalibrationOptions
+from automotive_cosim.studies.commands.reroute import IN_PYTHON
 from automotive_cosim.studies.equilibrium.settings import EquilibriumSettings, OptimumSettings
 from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, Decision, News, TripRow
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
@@ -11,11 +12,11 @@ from tests.laws import over
 from tests.run.test_row import comes_back, required_of
 
 COMMANDS: tuple[tuple[str, type, set[str]], ...] = (
-    ("scenarios equilibrate", EquilibriumSettings, set()),
+    ("scenarios equilibrate", EquilibriumSettings, {"seed"}),
     ("scenarios equilibrate", OptimumSettings, set()),
-    ("scenarios calibrate", CalibrationOptions, set()),
-    ("study reroute", RerouteSettings, {"scenario", "warm_up_s", "limit_s", "agent_steps"}),
-    ("study congestion", CongestionSettings, set()),
+    ("scenarios calibrate", CalibrationOptions, {"seed"}),
+    ("study reroute", RerouteSettings, {"scenario", "warm_up_s", *IN_PYTHON}),
+    ("study congestion", CongestionSettings, {"redraw", "step_s"}),
     ("study days", DaysSettings, set()),
 )
 

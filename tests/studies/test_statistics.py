@@ -497,8 +497,6 @@ def ends(made: Future, at_s: float) -> Future:
         ({"compliance": ()}, "--compliance is empty"),
         ({"compliance": (0.5, 0.5)}, "twice"),
         ({"departures_s": (0.0, 0.0)}, "twice"),
-        ({"equilibrium_gap": 0.05}, "duaIterate"),
-        ({"driver": "hurry"}, "hurried"),
         ({"step_s": 5.0}, "--step"),
         ({"policies": ("agent:asurado",)}, "asurada"),
         ({"policies": ("agent:asurada/nothing",)}, "nothing"),
@@ -507,7 +505,7 @@ def ends(made: Future, at_s: float) -> Future:
         ({"replicates": "many"}, "'auto'"),
         ({"together": (1.5,)}, "--together"),
         ({"together": (0.5, 0.5)}, "twice"),
-        ({"arrived": 0.1}, "--arrived"),
+        ({"arrived": 0.1}, "arrived"),
         ({"ego_class": "Energy default"}, "emission class"),
     ],
 )

@@ -16,26 +16,6 @@ from automotive_cosim.traffic.network import read_network
 Net = Callable[[str], Any]
 Rides = Callable[[str], Any]
 
-PLACES = {
-    # Junction of the net: longitude, latitude (degrees) and height (m) of the village or portal.
-    "spluegen": (9.3230, 46.5530, 1457),
-    "nufenen": (9.2470, 46.5400, 1569),
-    "hinterrhein": (9.2000, 46.5330, 1620),
-    "portal_nord": (9.1870, 46.5290, 1613),
-    "san_bernardino": (9.1930, 46.4630, 1607),
-    "pian_san_giacomo": (9.2180, 46.4270, 1171),
-    "mesocco": (9.2330, 46.3930, 790),
-}
-
-
-@pytest.mark.parametrize("junction", PLACES)
-def test_villages_lie_where_the_alps_have_them(
-    junction: str, net: Net, metres: Callable[..., float], lonlat: Callable[..., Any]
-) -> None:
-    lon_deg, lat_deg, height_m = PLACES[junction]
-    assert metres((lon_deg, lat_deg), lonlat("alpine_pass", junction)) < 700
-    assert net("alpine_pass").getNode(junction).getCoord3D()[2] == pytest.approx(height_m, abs=20)
-
 
 def tunnel(net: Net) -> list[Any]:
     return [edge for edge in net("alpine_pass").getEdges() if edge.getParam("tunnel") == "yes"]

@@ -13,50 +13,6 @@ from automotive_cosim.traffic.network import read_network
 Net = Callable[[str], Any]
 Rides = Callable[[str], Any]
 
-POSTED = {
-    # The edge of the Congestion Charge zone.
-    "Euston Road": "30 mph",
-    "Marylebone Road": "30 mph",
-    "Pentonville Road": "30 mph",
-    # Transport for London's inside it, since March 2020.
-    "Victoria Embankment": "20 mph",
-    # The boroughs' own.
-    "Strand": "20 mph",
-    "Kingsway": "20 mph",
-    "High Holborn": "20 mph",
-    "Southampton Row": "20 mph",
-    "Gower Street": "20 mph",
-    "Gray's Inn Road": "20 mph",
-    "Fleet Street": "20 mph",
-}
-
-LANDMARKS = {
-    # Junction of the net: longitude, latitude of the station or square beside it, degrees.
-    "holborn": (-0.1200, 51.5174),
-    "st_giles": (-0.1305, 51.5164),
-    "leicester_square": (-0.1281, 51.5113),
-    "cambridge_circus": (-0.1289, 51.5133),
-    "trafalgar": (-0.1270, 51.5080),
-    "temple": (-0.1141, 51.5111),
-    "chancery_holborn": (-0.1111, 51.5183),
-    "gower_euston": (-0.1359, 51.5258),
-    "russell_sq_ne": (-0.1244, 51.5230),
-    "lancaster": (-0.1194, 51.5117),
-}
-
-
-@pytest.mark.parametrize("street", POSTED)
-def test_signs(street: str, net: Net) -> None:
-    edges = [edge for edge in net("london").getEdges() if edge.getName() == street]
-    assert {edge.getParam("maxspeed") for edge in edges} == {POSTED[street]}
-
-
-@pytest.mark.parametrize("junction", LANDMARKS)
-def test_junctions_lie_where_london_has_them(
-    junction: str, metres: Callable[..., float], lonlat: Callable[..., Any]
-) -> None:
-    assert metres(LANDMARKS[junction], lonlat("london", junction)) < 150
-
 
 def test_traffic_keeps_left(net: Net) -> None:
     assert read_network(scenarios.load("london").folder / "london.net.xml.gz").map.left_hand

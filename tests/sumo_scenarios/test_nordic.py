@@ -19,40 +19,10 @@ from automotive_cosim.traffic.network import Network, read_network
 Net = Callable[[str], Any]
 Rides = Callable[[str], Any]
 
-POSTED = {
-    "E10": {"80", "90", "100"},
-    "Malmvägen": {"40", "50"},
-    "Österleden": {"50"},
-    "Steinholtzgatan": {"30"},
-    "Marknadsvägen": {"40"},
-    "Jukkasjärvivägen": {"80"},
-    "Kurravaaravägen": {"50", None},
-}
-
-LANDMARKS = {
-    # Junction of the net: longitude, latitude of what stands beside it, degrees.
-    "stadshuset": (20.3005, 67.8499),
-    "x_airport": (20.3368, 67.8220),
-    "x_jukkasjarvi": (20.6169, 67.8500),
-}
-
 
 @pytest.fixture(scope="module")
 def nordic() -> Network:
     return read_network(build.ROOT / "nordic" / "nordic.net.xml.gz")
-
-
-@pytest.mark.parametrize("street", POSTED)
-def test_signs(street: str, net: Net) -> None:
-    edges = [edge for edge in net("nordic").getEdges() if edge.getName() == street]
-    assert {edge.getParam("maxspeed") for edge in edges} == POSTED[street]
-
-
-@pytest.mark.parametrize("junction", LANDMARKS)
-def test_junctions_lie_where_kiruna_has_them(
-    junction: str, metres: Callable[..., float], lonlat: Callable[..., Any]
-) -> None:
-    assert metres(LANDMARKS[junction], lonlat("nordic", junction)) < 500
 
 
 def test_the_sun_does_not_rise_but_it_is_not_night() -> None:

@@ -12,52 +12,9 @@ from automotive_cosim.geo.place import Atlas
 Net = Callable[[str], Any]
 Rides = Callable[[str], Any]
 
-POSTED = {
-    # 50 since October 2024.
-    "Boulevard Périphérique Intérieur": {"50"},
-    "Boulevard Périphérique Extérieur": {"50"},
-    "Accès Porte d'Auteuil": {"50"},
-    "Sortie Porte de Sèvres": {"50"},
-    # Boulevards des Maréchaux, left at 50 in 2021.
-    "Boulevard Suchet": {"50"},
-    "Boulevard Murat": {"50"},
-    "Boulevard du Général-Martial-Valin": {"50"},
-    "Boulevard Victor": {"50"},
-    # The rest of Paris.
-    "Rue d'Auteuil": {"30"},
-    "Rue Michel-Ange": {"30"},
-    "Avenue de Versailles": {"30"},
-    "Avenue de la Porte-de-Saint-Cloud": {"30"},
-    "Boulevard Exelmans": {"30"},
-}
-
-LANDMARKS = {
-    # Junction of the net: longitude, latitude of the metro station or bridgehead beside it, degrees.
-    "auteuil_e": (2.2583, 48.8480),
-    "michel_ange_auteuil": (2.2640, 48.8480),
-    "michel_ange_molitor": (2.2615, 48.8449),
-    "exelmans_michel_ange": (2.2598, 48.8426),
-    "saint_cloud_e": (2.2570, 48.8380),
-    "garigliano_rd": (2.2683, 48.8397),
-    "balard": (2.2785, 48.8364),
-}
-
 
 def peripherique(net: Net) -> list[Any]:
     return [e for e in net("peripherique").getEdges() if e.getName().startswith("Boulevard Périphérique")]
-
-
-@pytest.mark.parametrize("street", POSTED)
-def test_signs(street: str, net: Net) -> None:
-    edges = [edge for edge in net("peripherique").getEdges() if edge.getName() == street]
-    assert {edge.getParam("maxspeed") for edge in edges} == POSTED[street]
-
-
-@pytest.mark.parametrize("junction", LANDMARKS)
-def test_junctions_lie_where_paris_has_them(
-    junction: str, metres: Callable[..., float], lonlat: Callable[..., Any]
-) -> None:
-    assert metres(LANDMARKS[junction], lonlat("peripherique", junction)) < 150
 
 
 def test_all_of_it_lies_in_paris_and_its_low_emission_zone(net: Net) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -23,6 +25,7 @@ from .proven import changed
 
 Net = Callable[[str], Any]
 SHIPPED = scenarios.shipped()
+TOWNS = tomllib.loads(Path(__file__).with_name("towns.toml").read_text(encoding="utf-8"))
 COUNTRIES = {"border": {"IE", "GB"}}
 """Of a network that lies in several."""
 
@@ -113,6 +116,27 @@ def test_every_edge_says_what_its_signs_say(name: str, net: Net) -> None:
             assert edge.getSpeed() >= NO_LIMIT_FROM_MPS, edge.getID()
         elif "maxspeed" in params:
             assert edge.getSpeed() * 3.6 == pytest.approx(signed_kmh(params["maxspeed"]), abs=0.05), edge.getID()
+
+
+def named(table: str) -> list[tuple[str, str]]:
+    """Each entry of a table of ``towns.toml``, with its town."""
+    return [(town, entry) for town, known in TOWNS.items() for entry in known.get(table, ())]
+
+
+@pytest.mark.parametrize(("town", "street"), named("posted"))
+def test_streets_are_signed_as_they_are_known(town: str, street: str, net: Net) -> None:
+    edges = [edge for edge in net(town).getEdges() if edge.getName() == street]
+    assert {edge.getParam("maxspeed") or "" for edge in edges} == {*TOWNS[town]["posted"][street]}
+
+
+@pytest.mark.parametrize(("town", "junction"), named("at"))
+def test_junctions_lie_beside_their_landmarks(
+    town: str, junction: str, net: Net, metres: Callable[..., float], lonlat: Callable[..., Any]
+) -> None:
+    lon_deg, lat_deg, *height_m = TOWNS[town]["at"][junction]
+    assert metres((lon_deg, lat_deg), lonlat(town, junction)) < TOWNS[town]["within_m"]
+    if height_m:
+        assert net(town).getNode(junction).getCoord3D()[2] == pytest.approx(height_m[0], abs=20)
 
 
 @pytest.mark.parametrize("name", SHIPPED)

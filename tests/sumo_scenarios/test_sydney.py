@@ -23,25 +23,6 @@ from automotive_cosim.traffic.network import Network, read_network
 Net = Callable[[str], Any]
 Rides = Callable[[str], Any]
 
-POSTED = {
-    "George Street": {"50"},
-    "Dight Street": {"50"},
-    "Windsor Street": {"50"},
-    "Macquarie Street": {"60"},
-    "Wilberforce Road": {"60", "80"},
-    "Hawkesbury Valley Way": {"60", "80"},
-    "Putty Road": {"60", "80", "100"},
-    "East Kurrajong Road": {None},
-}
-
-LANDMARKS = {
-    # Junction of the net: longitude, latitude of the station or square beside it, degrees.
-    "station": (150.8109, -33.6137),
-    "thompson_square": (150.8222, -33.6045),
-    "clarendon": (150.7870, -33.6085),
-    "lennox_east": (150.7525, -33.5990),
-}
-
 DIPPED_WITHIN_M = 200.0
 """Australian Road Rules, rule 218."""
 
@@ -56,19 +37,6 @@ def forked(sumo: None, proof: None) -> Iterator[Forked]:
     simulation = Forked(scenarios.load("sydney"), seed=1)
     yield simulation
     simulation.close()
-
-
-@pytest.mark.parametrize("street", POSTED)
-def test_signs(street: str, net: Net) -> None:
-    edges = [edge for edge in net("sydney").getEdges() if edge.getName() == street]
-    assert {edge.getParam("maxspeed") for edge in edges} == POSTED[street]
-
-
-@pytest.mark.parametrize("junction", LANDMARKS)
-def test_junctions_lie_where_sydney_has_them(
-    junction: str, metres: Callable[..., float], lonlat: Callable[..., Any]
-) -> None:
-    assert metres(LANDMARKS[junction], lonlat("sydney", junction)) < 500
 
 
 def test_traffic_keeps_left(sydney: Network) -> None:

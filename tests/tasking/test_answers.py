@@ -2,8 +2,8 @@
 
 import pytest
 
-from automotive_cosim.tasking.answers import only_answered
 from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.verdict import only_answered
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 

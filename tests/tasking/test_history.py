@@ -6,9 +6,15 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.tasking.checks import AppDataIs
+from automotive_cosim.tasking.checks import (
+    AppDataAt,
+    AppDataIncludes,
+    AppDataIs,
+    AppDataWithout,
+    EnteredAll,
+    SaysFigure,
+)
 from automotive_cosim.tasking.history import After, Lasted, NotBefore, While
-from automotive_cosim.tasking.records import AppDataAt, AppDataIncludes, AppDataWithout, EnteredAll, SaysFigure
 
 A, B = AppDataIs("a", (True,)), AppDataIs("b", (True,))
 

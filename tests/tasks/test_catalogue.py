@@ -12,7 +12,7 @@ from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.instance import draw, instances
-from automotive_cosim.tasking.known import check
+from automotive_cosim.tasking.own_files import check
 from automotive_cosim.tasking.task import Basis, Differs, Dimension, Module, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over

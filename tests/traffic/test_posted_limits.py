@@ -9,6 +9,7 @@ from dataclasses import replace
 from datetime import datetime, time, timedelta
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, LimitSource
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan, Traffic
+from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.posted_limits import (
     in_force,
@@ -368,6 +370,28 @@ def test_roads_and_turns_are_closed_at_the_hours_of_the_drive(shut: Forked, grid
     assert driven[9] == ["cwc0", "c0c1", "c1c2", "c2c3", "c3c4", "c4ce"]
     assert "c1c2" not in driven[8]
     assert ("c2c3", "c3c4") not in pairwise(driven[7])
+
+
+def test_who_stands_on_a_road_that_has_closed_drives_on() -> None:
+    """Also if the next road is closed, too: from the first, SUMO searches no way."""
+
+    def refuses(*_: object) -> None:
+        raise RuntimeError("not allowed to depart on any lane")
+
+    sumo = SimpleNamespace(
+        refusals=(RuntimeError,),
+        vehicle=SimpleNamespace(isRouteValid=lambda vehicle: False),
+        reroute=refuses,
+        find_route=refuses,
+        route=lambda vehicle: ("a", "b"),
+        route_index=lambda vehicle: 0,
+        type_of=lambda vehicle: "car",
+    )
+    network = SimpleNamespace(crossings={"a": {"b": ()}})
+    detours = Detours(sumo, network)  # type: ignore[arg-type]
+    detours.follow(frozenset({"a", "b"}), frozenset())
+    detours.send_round("other")
+    assert detours.cut_short == 0
 
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "scenarios.md"

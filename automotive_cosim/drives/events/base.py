@@ -85,7 +85,6 @@ class DriveAct:
 
     @property
     def words(self) -> str:
-        """In words, for reports."""
         if self.alert is not None:
             speed = "" if self.speed_kmh is None else f", {self.speed_kmh:.0f} km/h"
             severity = "" if self.severity is Severity.WARNING else f", {self.severity}"
@@ -143,11 +142,7 @@ class EventKind(ABC):
 
     @abstractmethod
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """What there is at the last moment of a drive; at most one sighting per subject.
-
-        Args:
-            drive: the moments so far, at least one.
-        """
+        """What there is at the last moment of a drive; at most one sighting per subject."""
         ...
 
     @abstractmethod
@@ -169,7 +164,6 @@ class EventKind(ABC):
         """Whether an act is one that is right for an event.
 
         Args:
-            act: the act.
             value: the event's ``Sighting.value``.
         """
         if act.alert is not None:

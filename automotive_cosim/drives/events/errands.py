@@ -71,7 +71,6 @@ class ErrandEvent(EventKind):
         return any(path in self.keys for path, _ in act.writes)
 
     def concerns(self, act: DriveAct) -> bool:
-        """The same."""
         return self.settles(act, None)
 
     @abstractmethod
@@ -80,13 +79,7 @@ class ErrandEvent(EventKind):
 
     @abstractmethod
     def is_done(self, errand: Errand, begun: Moment, now: Moment) -> bool:
-        """Whether it is carried out.
-
-        Args:
-            errand: what was asked for.
-            begun: the moment at which it was said.
-            now: a later one.
-        """
+        """Whether it is carried out."""
 
     def is_possible(self, errand: Errand, now: Moment) -> bool:
         """Whether it can be carried out now."""
@@ -119,7 +112,6 @@ class ErrandMessage(ErrandEvent):
     keys = frozenset({"messages.sent", "messages.read"})
 
     def words(self, errand: Errand) -> str:
-        """The reply."""
         return f"answer {errand.about}: {errand.wanted}"
 
     def is_done(self, errand: Errand, begun: Moment, now: Moment) -> bool:
@@ -128,7 +120,6 @@ class ErrandMessage(ErrandEvent):
         return bool(sent == [{"to": errand.about, "text": errand.wanted}])
 
     def is_possible(self, errand: Errand, now: Moment) -> bool:
-        """Only with a network."""
         return bool(now.signals[LINK.ONLINE.path])
 
 
@@ -144,11 +135,9 @@ class ErrandCall(ErrandEvent):
     grace_s = 15.0
 
     def words(self, errand: Errand) -> str:
-        """Who calls."""
         return f"decline the call of {errand.about}"
 
     def is_done(self, errand: Errand, begun: Moment, now: Moment) -> bool:
-        """Whether it was declined."""
         return errand.about in now.commands["calls.declined"]
 
     def is_possible(self, errand: Errand, now: Moment) -> bool:
@@ -165,7 +154,6 @@ class ErrandPlace(ErrandEvent):
     keys = frozenset({"navigation.destination"})
 
     def words(self, errand: Errand) -> str:
-        """The place."""
         return f"guidance to {errand.about}"
 
     def is_done(self, errand: Errand, begun: Moment, now: Moment) -> bool:

@@ -58,7 +58,6 @@ class Tracker:
     """Finds the events of one drive as it goes."""
 
     def __init__(self, kinds: Mapping[str, EventKind]) -> None:
-        """Tracks events of these kinds."""
         self._kinds = kinds
         self._latest: dict[str, dict[tuple[str, bool], DriveEvent]] = {name: {} for name in kinds}
         """By kind, then by subject and whether it only looks like one."""

@@ -122,7 +122,6 @@ class Subject:
 
     @property
     def failed(self) -> list[TrialRow]:
-        """Those that failed."""
         return [row for row in self.judged if self.has_failed(row)]
 
     @property
@@ -150,7 +149,6 @@ class Subject:
 
     @property
     def drives(self) -> list[DriveTrialRow]:
-        """The judged drives."""
         return [row for row in self.judged if isinstance(row, DriveTrialRow)]
 
     @property
@@ -160,7 +158,6 @@ class Subject:
 
     @property
     def hours(self) -> float:
-        """Driven."""
         return hours_of(self.judged)
 
     @property
@@ -178,7 +175,6 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     """The trials of an agent in a folder of ``eval`` or ``search``, or the one of a recorded drive or task.
 
     Args:
-        folder: the folder.
         agent: whose; empty if there is only one that is neither a reference nor a control.
 
     Raises:

@@ -26,9 +26,6 @@ def missing_mass(counts: Iterable[int]) -> tuple[float, float]:
 
     Good 1953, Biometrika 40; McAllester and Schapire 2000, COLT: the estimate errs by at most
     (2 √2 + √3) √(ln(3/δ)/n) with probability 1 - δ.
-
-    Args:
-        counts: how often each kind was seen.
     """
     seen = list(counts)
     total = sum(seen)

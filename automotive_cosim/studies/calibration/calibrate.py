@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.contracts import Tell
-from automotive_cosim.errors import CountsError, ScenarioError
+from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.osm.network import entries, exits
 from automotive_cosim.scenarios import Scenario, variant
@@ -53,7 +53,6 @@ def calibrate(
     """Writes a copy of a scenario whose demand carries the counts. A demand that gridlocks is not written.
 
     Args:
-        scenario: what to calibrate.
         counts_file: hourly counts, see ``counts``.
         target: the copy's, new or empty; it appears once it is complete.
         options: the user's options.
@@ -61,7 +60,7 @@ def calibrate(
         finish: adds to the copy before it appears.
 
     Raises:
-        CountsError: the counts cannot be used.
+        UserError: the counts cannot be used.
         UserError: the target exists or another program is making it, or the demand has stops or persons.
         ScenarioError: SUMO refuses the scenario, or it has no demand.
         SetupError: eclipse-sumo is not installed.
@@ -99,12 +98,12 @@ def _hours(counts: Counts, options: CalibrationOptions) -> tuple[int, ...]:
     hours = tuple(range(first, last + 1))
     missing = [hour for hour in hours if hour not in counts.hours]
     if missing or not hours:
-        raise CountsError(
+        raise UserError(
             f"there are no counts of {missing[0] if missing else first} h; give --hours that were counted, in a"
             f" row: {', '.join(map(str, counts.hours))}"
         )
     if options.at_hour is not None and options.at_hour not in hours:
-        raise CountsError(f"--at {options.at_hour} is not one of the calibrated hours, {first} to {last}")
+        raise UserError(f"--at {options.at_hour} is not one of the calibrated hours, {first} to {last}")
     return hours
 
 
@@ -135,7 +134,7 @@ class _Calibration:
         held_out = self._held_out(mapped)
         known = {key: flow for key, flow in flows.items() if key[0] not in held_out}
         if not any(known.values()):
-            raise CountsError(
+            raise UserError(
                 "no site could be placed on the network; give each an edge, or lon,lat and bearing"
                 + "".join(f"\n{site}: {why}" for site, why in list(mapped.unmapped.items())[:10])
             )

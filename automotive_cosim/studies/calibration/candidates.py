@@ -119,7 +119,6 @@ class _Places:
 
     @classmethod
     def of(cls, routes: Sequence[Candidate]) -> _Places:
-        """The places of some routes."""
         index: dict[str, int] = {}
         edges = np.array([index.setdefault(edge, len(index)) for route in routes for edge in route.edges])
         lengths = np.array([len(route.edges) for route in routes])
@@ -129,8 +128,6 @@ class _Places:
         """When each place is left, (hours, places).
 
         Args:
-            times: times of the edges.
-            clock: the hours.
             first_left_s: when the first edge of each route is left, (hours, routes).
         """
         first, table = times.table(self.index)
@@ -182,9 +179,7 @@ def passes(
     Args:
         routes: n routes; column ``hour * n + route`` stands for the departures of one in an hour.
         wanted: edge or turn, and hour -> row.
-        times: times of the edges.
         free_s: the same on empty roads, for the first edge.
-        clock: the hours.
     """
     names = {name: number for number, name in enumerate(dict.fromkeys(name for name, _ in wanted))}
     row_of = np.full((len(names) + 1, clock.hours + 1), -1)

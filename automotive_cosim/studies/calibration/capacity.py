@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from automotive_cosim.errors import CountsError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.xml import scan
 
 LANE_PER_H = 1800.0
@@ -47,7 +47,7 @@ def read_capacity(net: Path, additional: Iterable[Path] = ()) -> Capacity:
         additional: files that may hold other signal programs, as SUMO loads them.
 
     Raises:
-        CountsError: one is no XML.
+        UserError: one is no XML.
     """
     lanes: dict[str, int] = {}
     links: list[dict[str, str]] = []
@@ -72,7 +72,7 @@ def read_capacity(net: Path, additional: Iterable[Path] = ()) -> Capacity:
                 phases.append((float(attributes.get("duration", 0)), attributes.get("state", "")))
 
     for path in (net, *additional):
-        scan(path, start, error=CountsError)
+        scan(path, start, error=UserError)
     turns: dict[Movement, float] = defaultdict(float)
     of_lane: dict[tuple[str, str], float] = defaultdict(float)
     for link in links:

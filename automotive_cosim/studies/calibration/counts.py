@@ -26,7 +26,7 @@ from datetime import UTC, datetime, tzinfo
 from pathlib import Path
 from statistics import median
 
-from automotive_cosim.errors import CountsError
+from automotive_cosim.errors import UserError
 from automotive_cosim.studies.calibration.sheets import Sheet, SheetRow, read_sheet
 from automotive_cosim.studies.calibration.sumo_counts import (
     CARS,
@@ -92,7 +92,6 @@ class Counts:
 
     @property
     def sites(self) -> tuple[str, ...]:
-        """All sites, by name."""
         return tuple(sorted({site for site, _ in self.flows_per_h}))
 
     @property
@@ -116,12 +115,11 @@ def read_counts(path: Path, zone: tzinfo, sites: Path | None = None) -> Counts:
     """Reads a file of counts.
 
     Args:
-        path: of any kind.
         zone: time zone of the counted roads.
         sites: a file that says where the sites stand; for counts of SUMO's detectors, theirs.
 
     Raises:
-        CountsError: one cannot be read, lacks a column or has an impossible figure, or has only zeros.
+        UserError: one cannot be read, lacks a column or has an impossible figure, or has only zeros.
     """
     places: dict[str, SitePlace] = {}
     about = path.name
@@ -141,7 +139,7 @@ def read_counts(path: Path, zone: tzinfo, sites: Path | None = None) -> Counts:
             _need(sites, sheet, ("site",))
             places |= _places(sites, sheet)
     if not any(any(each) for each in flows.values()):
-        raise CountsError(f"{path} has no count above zero; give counts of working detectors")
+        raise UserError(f"{path} has no count above zero; give counts of working detectors")
     return Counts({key: median(each) for key, each in sorted(flows.items())}, places, about)
 
 
@@ -169,7 +167,7 @@ def read_travel_times(path: Path) -> tuple[TravelTime, ...]:
     """Reads measured times: ``from_edge,to_edge,hour,seconds``.
 
     Raises:
-        CountsError: it cannot be read, lacks a column or has an impossible figure.
+        UserError: it cannot be read, lacks a column or has an impossible figure.
     """
     sheet = _table(path)
     _need(path, sheet, TRAVEL)
@@ -189,16 +187,15 @@ def _table(path: Path) -> Sheet:
 def _need(path: Path, sheet: Sheet, wanted: Sequence[str]) -> None:
     missing = [name for name in wanted if name not in sheet.columns]
     if missing:
-        raise CountsError(f"{path} lacks the column {missing[0]!r}; give a table with {','.join(wanted)}")
+        raise UserError(f"{path} lacks the column {missing[0]!r}; give a table with {','.join(wanted)}")
 
 
 def _by_site(path: Path, sheet: Sheet, column: str) -> Iterator[tuple[SheetRow, str]]:
-    """Every row with its site."""
     site = ""
     for row in sheet.rows:
         site = row.cells[column] or site
         if not site:
-            raise CountsError(f"{path} line {row.line} has no site; give each row a site")
+            raise UserError(f"{path} line {row.line} has no site; give each row a site")
         yield row, site
 
 
@@ -216,7 +213,7 @@ def _places(path: Path, sheet: Sheet) -> dict[str, SitePlace]:
         else:
             continue
         if found.setdefault(name, place) != place:
-            raise CountsError(
+            raise UserError(
                 f"{path} line {row.line}: site {name!r} has a different position than before; give it only one"
             )
     return found
@@ -229,7 +226,7 @@ def _paris_hour(path: Path, row: SheetRow, zone: tzinfo) -> int | None:
         stamp = datetime.fromisoformat(text)
         local = (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).astimezone(zone)
     except (ValueError, OverflowError) as error:
-        raise CountsError(f"{path} line {row.line}: {text!r} is not a date and time") from error
+        raise UserError(f"{path} line {row.line}: {text!r} is not a date and time") from error
     return None if local.weekday() >= SATURDAY else local.hour
 
 
@@ -237,7 +234,7 @@ def _hour(path: Path, row: SheetRow) -> int:
     text = row.cells["hour"]
     found = HOUR.fullmatch(text)
     if found is None or int(found[1]) >= HOURS:
-        raise CountsError(f"{path} line {row.line}: hour {text!r} is not a whole number from 0 to 23")
+        raise UserError(f"{path} line {row.line}: hour {text!r} is not a whole number from 0 to 23")
     return int(found[1])
 
 
@@ -251,5 +248,5 @@ def _figure(path: Path, row: SheetRow, name: str, most: float, least: float = 0.
     except ValueError:
         value = math.nan
     if not least <= value <= most:
-        raise CountsError(f"{path} line {row.line}: {name} is {text!r}; it must be a number from {least:g}")
+        raise UserError(f"{path} line {row.line}: {name} is {text!r}; it must be a number from {least:g}")
     return value

@@ -100,7 +100,6 @@ def drive(config: str, options: Mapping[str, str], clock: CountedTime, scratch: 
     Args:
         config: the scenario's configuration, for error texts.
         options: SUMO's.
-        clock: what to simulate.
         scratch: a folder for intermediate files.
 
     Raises:

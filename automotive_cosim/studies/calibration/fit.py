@@ -47,9 +47,7 @@ def fit(problem: CountedFlows, bounded_by: csr_array, bounds: Floats) -> Floats:
     """The flows, (n,), all above zero.
 
     Args:
-        problem: prior and counts.
         bounded_by: (k, n), share of each flow that each of k bounds concerns.
-        bounds: (k,).
     """
     from scipy.optimize import Bounds, minimize
     from scipy.sparse import vstack

@@ -101,10 +101,7 @@ def search(world: SearchWorld, given: DrivenDemand, per_h: float, rounds: int) -
     """Fits and drives, up to ``rounds`` times.
 
     Args:
-        world: what it may use.
-        given: the given demand, driven.
         per_h: its departures per hour.
-        rounds: most rounds.
     """
     clock = world.clock
     rng = np.random.default_rng(world.seed)

@@ -19,7 +19,7 @@ from datetime import datetime, time
 from importlib.util import find_spec
 from pathlib import Path
 
-from automotive_cosim.errors import CountsError, SetupError, install_hint
+from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import opened
 from automotive_cosim.formats.limited import read_limited
@@ -66,12 +66,10 @@ def read_sheet(
 
     Args:
         path: the file, also gzipped.
-        wanted: sets of columns; a line that has all of one names the columns.
         known: columns whose case and spaces do not matter.
-        figures: columns of numbers.
 
     Raises:
-        CountsError: it cannot be read.
+        UserError: it cannot be read.
         SetupError: it is a workbook, and calamine is not installed.
     """
     widest: Cells = ()
@@ -92,7 +90,7 @@ def _tables(path: Path) -> Iterator[tuple[Cells, bool]]:
         if find_spec("python_calamine") is None:
             hint = install_hint("maps")
             raise SetupError(f"{path} is a workbook, which requires python-calamine: {hint}, or save it as CSV")
-        yield from ((cells, False) for cells in read_limited(_workbook, path, bounds.WORKBOOK, CountsError))
+        yield from ((cells, False) for cells in read_limited(_workbook, path, bounds.WORKBOOK, UserError))
     else:
         text = _text(path, data)
         for delimiter in DELIMITERS:
@@ -123,7 +121,7 @@ def _data(path: Path) -> bytes:
             data = file.read(bounds.TABLE_BYTES + 1)
     except OSError as error:
         reason = getattr(error, "strerror", None) or error
-        raise CountsError(f"{path} cannot be read ({reason}); give a table of counts") from error
+        raise UserError(f"{path} cannot be read ({reason}); give a table of counts") from error
     if len(data) > bounds.TABLE_BYTES:
         raise _too_large(path, f"is larger than {bounds.TABLE_BYTES / 2**20:g} MB")
     return data
@@ -139,7 +137,7 @@ def _text(path: Path, data: bytes) -> str:
         except UnicodeDecodeError:
             continue
     if text is None or CONTROL.search(text):
-        raise CountsError(f"{path} is neither text nor a workbook; in a spreadsheet, save it as CSV UTF-8 or .xlsx")
+        raise UserError(f"{path} is neither text nor a workbook; in a spreadsheet, save it as CSV UTF-8 or .xlsx")
     return text
 
 
@@ -155,11 +153,11 @@ def _separated(path: Path, text: str, delimiter: str) -> Cells:
             cells.append([cell.strip() for cell in line])
         return cells
     except csv.Error as error:
-        raise CountsError(f"{path} line {reader.line_num}: {error}; give a table of counts") from error
+        raise UserError(f"{path} line {reader.line_num}: {error}; give a table of counts") from error
 
 
-def _too_large(path: Path, why: str) -> CountsError:
-    return CountsError(f"{path} {why}; give the rows of fewer detectors")
+def _too_large(path: Path, why: str) -> UserError:
+    return UserError(f"{path} {why}; give the rows of fewer detectors")
 
 
 def _workbook(path: Path) -> list[Cells]:
@@ -190,16 +188,14 @@ def _workbook(path: Path) -> list[Cells]:
                     line[left_ : right + 1] = [cells[top][left_]] * len(line[left_ : right + 1])
             sheets.append([line if any(line) else () for line in cells])
     except (CalamineError, ZipError) as error:
-        raise CountsError(
-            f"{path} is not a workbook that can be read ({error}); save it as .xlsx or CSV"
-        ) from error
+        raise UserError(f"{path} is not a workbook that can be read ({error}); save it as .xlsx or CSV") from error
     return sheets
 
 
 def _refuse_bomb(path: Path) -> None:
     """
     Raises:
-        CountsError: what the workbook declares to hold is far more than it is.
+        UserError: what the workbook declares to hold is far more than it is.
     """
     try:
         with opened(path) as file, zipfile.ZipFile(io.BytesIO(file.read())) as parts:

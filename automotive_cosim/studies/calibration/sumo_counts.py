@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.errors import CountsError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import opened
 from automotive_cosim.formats.xml import read_tree
 from automotive_cosim.studies.calibration.sheets import Sheet
@@ -69,7 +69,7 @@ def read_xml_counts(path: Path, detectors: Path | None) -> Flows:
         detectors: the file that says on which lane each loop lies; edge data needs none.
 
     Raises:
-        CountsError: it is neither, cannot be read, has an impossible figure, or lacks the place of a loop.
+        UserError: it is neither, cannot be read, has an impossible figure, or lacks the place of a loop.
     """
     loops = edges = False
     found: list[_Count] = []
@@ -86,7 +86,7 @@ def read_xml_counts(path: Path, detectors: Path | None) -> Flows:
             passed = sum(_number(path, element, name) for name in ("entered", "departed") if name in element.attrib)
             found.append(_Count(element.get("id", ""), begin_s, end_s, passed))
     if loops == edges:
-        raise CountsError(
+        raise UserError(
             f"{path} has no counts: neither edge data (<edge entered=…>) nor what induction loops write"
             " (<interval nVehContrib=…>); give one of these, or a table"
         )
@@ -97,12 +97,10 @@ def read_dfrouter_counts(path: Path, sheet: Sheet, detectors: Path | None) -> Fl
     """The flows of dfrouter's table. A period lasts until the next one of the file; if there is only one, an hour.
 
     Args:
-        path: the file that the table is of, for errors.
-        sheet: the table.
         detectors: the file that says on which lane each detector lies.
 
     Raises:
-        CountsError: it has an impossible figure, or lacks the place of a detector.
+        UserError: it has an impossible figure, or lacks the place of a detector.
     """
     rows = [
         (
@@ -137,7 +135,7 @@ def _by_hour(counts: Iterable[_Count]) -> Flows:
 def _by_edge(flows: Flows, lanes: Mapping[str, str]) -> Flows:
     """Adds up the detectors of an edge, one per lane."""
     if lost := sorted({name for name, _ in flows} - lanes.keys()):
-        raise CountsError(f"detector {lost[0]!r} was counted, and --sites has no lane for it; give it one")
+        raise UserError(f"detector {lost[0]!r} was counted, and --sites has no lane for it; give it one")
     chosen = {lane: name for name, lane in sorted(lanes.items(), reverse=True)}
     found: Flows = {}
     for lane, name in sorted(chosen.items()):
@@ -150,9 +148,8 @@ def _by_edge(flows: Flows, lanes: Mapping[str, str]) -> Flows:
 
 
 def _lanes(path: Path, detectors: Path | None) -> dict[str, str]:
-    """The lane of each detector."""
     if detectors is None:
-        raise CountsError(
+        raise UserError(
             f"{path} counts at detectors and does not say where they are; give the file with their lanes:"
             " --sites detectors.add.xml"
         )
@@ -162,19 +159,19 @@ def _lanes(path: Path, detectors: Path | None) -> dict[str, str]:
         if element.tag in PLACED and (name := element.get("id")) and (lane := element.get("lane"))
     }
     if not lanes:
-        raise CountsError(f"{detectors} has no detector with a lane; give SUMO's file with e1Detector elements")
+        raise UserError(f"{detectors} has no detector with a lane; give SUMO's file with e1Detector elements")
     return lanes
 
 
 def _elements(path: Path) -> Iterable[ET.Element]:
     """All elements, each before what it contains."""
-    return read_tree(path, error=CountsError).iter()
+    return read_tree(path, error=UserError).iter()
 
 
 def _span(path: Path, element: ET.Element) -> tuple[float, float]:
     begin_s, end_s = (_number(path, element, name) for name in ("begin", "end"))
     if begin_s >= end_s:
-        raise CountsError(f"{path}: an interval from {begin_s:g} to {end_s:g} s; its end must be later")
+        raise UserError(f"{path}: an interval from {begin_s:g} to {end_s:g} s; its end must be later")
     return begin_s, end_s
 
 
@@ -193,5 +190,5 @@ def _checked(what: str, text: str) -> float:
     except ValueError:
         value = math.nan
     if not 0 <= value < 1e9:
-        raise CountsError(f"{what} is {text!r}; it must be a number from 0")
+        raise UserError(f"{what} is {text!r}; it must be a number from 0")
     return value

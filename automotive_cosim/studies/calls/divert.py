@@ -43,9 +43,7 @@ def divert(running: Running, old: Edges, new: Edges, share: float, seed: int) ->
     """Sends a share of the cars that could the other way, and keeps them on it.
 
     Args:
-        running: the traffic.
         old: the section of the ego's route, as ``section`` makes it.
-        new: the other way.
         share: share of the cars, 0 to 1; a greater share contains those of every smaller one.
         seed: who is asked first.
 

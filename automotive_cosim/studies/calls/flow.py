@@ -89,7 +89,7 @@ class FlowSummary:
     (``detours``)."""
 
 
-class Advisor:
+class _Advisor:
     """Gives the advice, step by step. Who is asked, and who follows, depends on the seed and the vehicle's name."""
 
     def __init__(self, sumo: LibSumo, router: Router, advice: Advice, seed: int) -> None:
@@ -150,11 +150,6 @@ class Advisor:
 def take(running: Running, measure: AnyIncident | Advice | SignalControl, seed: int) -> None:
     """Takes a measure now; the times of incidents count from the end of the warm-up.
 
-    Args:
-        running: the traffic.
-        measure: what to do.
-        seed: who is advised.
-
     Raises:
         ScenarioError: it does not fit the network.
     """
@@ -162,7 +157,7 @@ def take(running: Running, measure: AnyIncident | Advice | SignalControl, seed: 
     match measure:
         case Advice():  # with a search of its own
             router = Router(running.sumo, world.network, world.congestion, SEARCHING_TYPE)
-            running.watchers.append(Advisor(running.sumo, router, measure, seed))
+            running.watchers.append(_Advisor(running.sumo, router, measure, seed))
         case SignalControl():
             if not control(running.sumo, measure):
                 raise ScenarioError("the network has no signals to control in another way")
@@ -174,7 +169,6 @@ def flow(running: Running, duration_s: float, every_s: float) -> tuple[FlowSumma
     """Lets the traffic run without an ego; returns its state now and at the end of every period.
 
     Args:
-        running: the traffic, with a ledger.
         duration_s: how long, a multiple of the period.
         every_s: the period, a multiple of the step.
     """

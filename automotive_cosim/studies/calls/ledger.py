@@ -31,7 +31,6 @@ class Ledger:
 
         Args:
             sumo: the running simulation.
-            step_s: its step length.
             consumptions: also what every vehicle emits and consumes, which costs about a third of SUMO's own step.
             tracks: also where the ego is.
         """
@@ -189,7 +188,6 @@ def keep_ledger(running: Running, *, consumptions: bool = False, tracks: bool = 
     """Records every step from now on, in all copies made later too.
 
     Args:
-        running: the traffic.
         consumptions: also of what every vehicle emits and consumes.
         tracks: also of where the ego is.
     """

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.calibration.result import Calibration
 
 
-@takes(CalibrationOptions)
+@takes(CalibrationOptions, but=("seed",))
 def calibrate_scenario(
     scenario: Annotated[
         str, typer.Argument(help="A scenario's folder, a shipped one's name, or any .sumocfg.", show_default=False)

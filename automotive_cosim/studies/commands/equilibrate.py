@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @takes(OptimumSettings)
-@takes(EquilibriumSettings)
+@takes(EquilibriumSettings, but=("seed",))
 def equilibrate_scenario(
     folder: Annotated[Path, typer.Argument(help="Folder of a scenario, or any .sumocfg.", show_default=False)],
     as_json: AsJson = False,

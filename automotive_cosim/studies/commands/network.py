@@ -1,4 +1,4 @@
-"""``automotive-cosim study congestion`` and ``days``: studies of a whole network."""
+"""``automotive-cosim study congestion``, ``days`` and ``adoption``: studies of a whole network."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.studies.commands.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
-from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, TrafficSettings
+from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, TrafficSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.run.batch import BatchKind
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 S = TypeVar("S", bound="StudyContent[Any, Any]")
 
 
-@takes(CongestionSettings)
+@takes(CongestionSettings, but=("redraw", "step_s"))
 @takes(ExecutorSettings)
 def congestion(
     out: StudyFolder = None,
@@ -66,6 +66,27 @@ def days(
     _run(plan, DAYS, DaysStudy, shown, "shares and seeds", out, settings, as_json=as_json)
 
 
+@takes(AdoptionSettings, but=("emissions",))
+@takes(ExecutorSettings)
+def adoption(
+    out: StudyFolder = None,
+    as_json: AsJson = False,
+    **settings: Any,
+) -> None:
+    """Put an assistant into a growing share of the cars of one traffic: what it does to them and to all others.
+
+    Rerun the command to resume a stopped study.
+    """
+    from automotive_cosim.studies.adoption.adoption import ADOPTION, AdoptionPlan, AdoptionStudy
+    from automotive_cosim.studies.adoption.page import shown
+
+    plan = filled(AdoptionPlan, settings)
+    tell_reading(plan.scenario)
+    plan.check()
+    tell_notes([plan.opened])
+    _run(plan, ADOPTION, AdoptionStudy, shown, "seeds", out, settings, as_json=as_json)
+
+
 def _run(
     plan: TrafficSettings,
     kind: BatchKind[Any, Any, Any],
@@ -81,13 +102,10 @@ def _run(
     """Runs what is left of a study of a whole network, and prints its result, if anything of it ran.
 
     Args:
-        plan: what to run.
-        kind: kind of batch.
         study_of: reads its folder.
         shown_of: what its report shows; the first table is printed.
         units: what it runs, in words.
         out: its folder; None for the one of its plan.
-        settings: where to run, as the command was given it.
         as_json: print an object alone.
         about: what is said of it before it runs.
 

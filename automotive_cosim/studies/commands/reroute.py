@@ -32,7 +32,11 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.reroute.rows import TripRow
 
 
-@takes(RerouteSettings, but=("scenario", "warm_up_s", "limit_s", "agent_steps"))
+IN_PYTHON = ("limit_s", "agent_steps", "every_s", "placebo_every", "arrived", "via", "ego_class")
+"""What only a ``StudyPlan`` of one's own sets."""
+
+
+@takes(RerouteSettings, but=("scenario", "warm_up_s", *IN_PYTHON))
 @takes(ExecutorSettings)
 def reroute(
     scenario: Annotated[
@@ -51,9 +55,6 @@ def reroute(
             show_default="scenario's",
         ),
     ] = None,
-    measure_gap: Annotated[
-        bool, typer.Option(help="Measure how far the demand's routes are from an equilibrium.")
-    ] = True,
     out: StudyFolder = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     as_json: AsJson = False,
@@ -91,14 +92,14 @@ def reroute(
         return
     with where:
         for plan, folder in zip(plans, folders, strict=True):
-            _run(console, plan, folder, where, measure_gap=measure_gap)
+            _run(console, plan, folder, where)
     if len(plans) == 1:
         _tell(console, Study.read(folders[0]), as_json=as_json)
     else:
         _tell_all(console, [Study.read(folder) for folder in folders], as_json=as_json)
 
 
-def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, measure_gap: bool) -> None:
+def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor) -> None:
     """Runs what is left of a study, and writes its report."""
     from automotive_cosim.run.store import read_rows
     from automotive_cosim.studies.reroute.batch import REROUTE
@@ -113,7 +114,7 @@ def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, me
 
     with driven(console, "drives", folder, said) as tell:
         REROUTE.run(plan, folder, executor=where, tell=tell)
-    for each in measure_demand(plan, folder) if measure_gap else ():
+    for each in measure_demand(plan, folder):
         console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
     write_study(folder)
 

@@ -46,8 +46,6 @@ class CongestionPlan(CongestionSettings):
                 if isinstance(found, EgoIncident):
                     raise UserError(f"{place} has {found.kind!r}, which needs the ego, but this study has none")
                 check_edges(found, place, self.opened)
-        if self.corridor:
-            self.opened.trip(self.corridor)
         self.scene()
 
     @property
@@ -103,10 +101,9 @@ class CongestionPlan(CongestionSettings):
     @property
     def along(self) -> Trip:
         """The trip along which the time-space diagrams go."""
-        return self.opened.trip(self.corridor) if self.corridor else self.opened.ego.trips[0]
+        return self.opened.ego.trips[0]
 
     def jobs(self) -> tuple[CongestionJob, ...]:
-        """One for each seed."""
         return tuple(CongestionJob(self, seed) for seed in self.seeds)
 
 

@@ -82,7 +82,6 @@ class NetworkPart:
     period: int | None = None
 
     def cells(self, plan: CongestionPlan, outcome: MeasureOutcome) -> Iterator[FlowCell]:
-        """Its cells of an outcome."""
         for cell in outcome.cells:
             if self.road_class in (None, cell.road_class) and self.period in (
                 None,

@@ -1,6 +1,5 @@
 """Advice from day to day until traffic settles.
 
 days     the days of one share of advised drivers, and of the user equilibrium
-adviser  who chooses the routes of the advised
 page     the report
 """

@@ -78,7 +78,6 @@ def equilibrate(
     Args:
         folder: the scenario's, or a ``.sumocfg``.
         target: the copy's, new or empty; it appears once it is complete.
-        options: when to end.
         tell: called after every step.
 
     Raises:

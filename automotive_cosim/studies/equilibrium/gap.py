@@ -101,7 +101,6 @@ class EdgeTimes:
 
         Args:
             free_s: time of every edge at its limit.
-            trips: the trips.
         """
         sums: dict[tuple[str, int], list[float]] = defaultdict(lambda: [0.0, 0.0])
         for trip in trips:
@@ -224,7 +223,6 @@ def drive(
     """Drives a demand once, with what would have been better; raises like ``measure``.
 
     Args:
-        configuration: the network and the demand.
         scenario: how SUMO runs.
         observe_s: how long after the warm-up departures count.
         seed: SUMO's seed.
@@ -308,8 +306,6 @@ def run(configuration: Configuration, scenario: Scenario, observe_s: float, seed
     """Runs SUMO on a demand until ``TAIL_S`` after the time observed; raises like ``measure``.
 
     Args:
-        configuration: the network and the demand.
-        scenario: how SUMO runs.
         observe_s: how long after the warm-up departures count.
         seed: SUMO's seed.
         scratch: a folder for intermediate files.
@@ -349,7 +345,6 @@ def quickest(
 
     Args:
         trips: only departures, types, first and last edges are read.
-        times: times of the edges.
         net: the network's file, in that folder.
         types: the vehicle types, as SUMO's XML.
         scratch: a folder for intermediate files.

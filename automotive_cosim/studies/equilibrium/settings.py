@@ -40,5 +40,5 @@ class OptimumSettings:
     """Folder to create."""
     system_optimum: bool = False
     """Then search for routes with a lower total travel time, and compare."""
-    seeds: Annotated[tuple[int, ...] | None, Option(default="the ten after --seed")] = None
+    seeds: Annotated[tuple[int, ...] | None, Option(default="1-10")] = None
     """Seeds with which both states are driven, as in 1-10."""

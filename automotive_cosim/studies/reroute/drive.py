@@ -64,7 +64,6 @@ def run_drive(
     """Runs a drive, branches at every decision point, and compares the futures.
 
     Args:
-        job: the drive to run.
         simulation: its traffic at the ego's departure, watched.
         history: measurements of the traffic so far, ``traffic.MEASURED_EVERY_S`` apart.
         tracks: folder for the ego's tracks in a simulation that keeps them; None leaves them out.
@@ -110,7 +109,7 @@ def depart(job: StudyJob, simulation: Forked) -> RemoteTraffic:
     seed = int(np.random.default_rng([*job.entropy, 0]).integers(2**31))
     plan = EgoPlan(
         job.trip,
-        job.plan.driver or scenario.ego.driver,
+        scenario.ego.driver,
         seed,
         scenario.weather,
         scenario.start,

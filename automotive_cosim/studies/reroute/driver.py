@@ -32,7 +32,6 @@ def drive_on(
     """Drives until the drive or its decisions are over.
 
     Args:
-        traffic: the drive.
         plan: which delay makes a decision due, and how often.
         decide: called while one is due; true if there was something to decide, so the next is due later.
         most: the drive ends after this many decisions; None drives to the destination.
@@ -69,8 +68,6 @@ def decided(agent: str, job: StudyJob, traffic: Traffic) -> None:
 
     Args:
         agent: the agent for ``make_agent``, as ``NAME`` or ``NAME/MODEL``.
-        job: the drive.
-        traffic: the branch; it is not closed.
 
     Raises:
         UserError: no such agent or model.

@@ -276,7 +276,7 @@ def horizons(study: Study) -> Table:
     note = (
         "Seconds that all others together save up to the instant at which the given share has arrived in the "
         f"faster future, over the decisions where the policy reroutes. The futures end at {study.plan.arrived:.0%} "
-        "(--arrived), or later, with the ego's arrival: “Others save” in “Other effects” counts up to then, and "
+        "(arrived), or later, with the ego's arrival: “Others save” in “Other effects” counts up to then, and "
         "over all decisions."
     )
     return Table("horizons", "The others, by horizon", columns, tuple(rows), note, heads=3)
@@ -317,8 +317,8 @@ def fleet(study: Study) -> Table:
     note = (
         "Sums over the vehicles of the class that arrived in both futures, per decision in which the policy "
         "reroutes. Classes are those that the demand's vehicle types declare (emissionClass), else SUMO's own for "
-        "the kind of vehicle; --ego-class declares the ego's. Noise is sound energy at the vehicles (Harmonoise), "
-        "as seconds of a car at 50 km/h, 65 dB(A)."
+        "the kind of vehicle; ego_class of the plan declares the ego's. Noise is sound energy at the vehicles "
+        "(Harmonoise), as seconds of a car at 50 km/h, 65 dB(A)."
     )
     return Table("fleet", "Emissions and consumption of everyone", columns, tuple(rows), note, heads=4)
 

@@ -28,7 +28,6 @@ def spread(pairs: Sequence[tuple[Future, Future]], group: Sequence[str], at_s: f
 
     Args:
         pairs: for every draw, the future in which the ego keeps its route, and the one in which it does not.
-        group: the other vehicles.
         at_s: instant of the fork.
     """
     left = [_times_left(pair, group, at_s) for pair in pairs]

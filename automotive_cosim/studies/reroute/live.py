@@ -38,7 +38,6 @@ class LiveDrive:
         """Writes nothing yet.
 
         Args:
-            job: the drive.
             traffic: its ego, which has departed.
             folder: the study's; None if nobody can watch.
         """

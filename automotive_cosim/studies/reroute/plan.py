@@ -16,9 +16,7 @@ from automotive_cosim.studies.plan import check_edges, check_values, driven_at, 
 from automotive_cosim.studies.reroute.policies import AGENT, parse_policy
 from automotive_cosim.studies.reroute.rows import TripRow
 from automotive_cosim.studies.settings import RerouteSettings
-from automotive_cosim.traffic.profiles import profile
 
-EQUILIBRIUM_GAP = 0.01
 """Relative gap below which a dynamic user assignment counts as converged."""
 
 AHEAD = "ahead"
@@ -41,11 +39,6 @@ class StudyPlan(RerouteSettings):
             UserError: one does not exist or is out of range.
         """
         check_values(self)
-        if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
-            raise UserError(
-                f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium below "
-                f"{EQUILIBRIUM_GAP:g}; run duaIterate longer, or omit the option"
-            )
         for text in self.policies:
             parse_policy(text)
         for agent in self.agents:
@@ -54,10 +47,8 @@ class StudyPlan(RerouteSettings):
                     "policy 'agent:human' needs a person, but a study runs unattended; choose another agent"
                 )
             make_agent(*named(agent))
-        if self.driver:
-            profile(self.driver)
         if self.ego_class and not re.fullmatch(r"[A-Za-z0-9_.]+(/[A-Za-z0-9_.]+)?", self.ego_class):
-            raise UserError(f"--ego-class is {self.ego_class!r}; give an emission class of SUMO, as Energy/default")
+            raise UserError(f"ego_class is {self.ego_class!r}; give an emission class of SUMO, as Energy/default")
         scenario = self.scene(0.0)
         if self.close not in ("", AHEAD):
             edges = network_of(scenario).edges
@@ -98,8 +89,6 @@ class StudyPlan(RerouteSettings):
 
     def demand(self) -> str:
         """A description of where the other vehicles' routes come from."""
-        if self.equilibrium_gap is not None:
-            return f"routes from duaIterate, relative gap {self.equilibrium_gap:.2%}"
         told = sorted({job.share for job in self.jobs()})
         drawn = "; every seed redraws the trips" if self.scene(0.0).sumo.redraws_trips else ""
         if told == [0.0]:

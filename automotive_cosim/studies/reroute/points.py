@@ -28,11 +28,8 @@ def together(
 
     Args:
         share: share of the eligible cars that were rerouted with the ego.
-        draw: number of the draw.
         pair: the future in which everyone keeps their route, and the one in which they do not.
         group: the other vehicles that were present.
-        took: those that were rerouted with the ego.
-        could: how many were eligible.
         excluded: why the future does not count.
     """
     stay, other = pair
@@ -120,7 +117,6 @@ def compared(point: Point, stay: Future, history: Sequence[TrafficSummary]) -> D
     """A decision with the gains of its branches.
 
     Args:
-        point: the decision and the futures of its branches.
         stay: the drive itself, in which the ego keeps its route.
         history: measurements of the traffic up to the ego's departure.
     """
@@ -219,8 +215,6 @@ def branched(stay: Future, other: Future, group: Sequence[str]) -> Branch:
     """A future compared with the one in which the ego keeps its route.
 
     Args:
-        stay: that one.
-        other: the future.
         group: the other vehicles that were there at the fork.
     """
     return Branch(

@@ -117,8 +117,6 @@ def chosen(policy: Policy, decision: Decision, age_s: float, compliance: float =
     """The future that a policy's choice leads to.
 
     Args:
-        policy: the policy.
-        decision: a decision of a drive.
         age_s: age of its news; SUMO's device, hindsight and agents have their own.
         compliance: how probably the driver follows the advice; hindsight needs no driver.
 
@@ -165,7 +163,6 @@ def best(decision: Decision, without: int | None = None) -> int | None:
     """The branch with the shortest mean travel time; None if keeping the route is as short.
 
     Args:
-        decision: a decision of a drive.
         without: a draw to ignore.
     """
     draws = [draw for draw in range(decision.draws) if draw != without]

@@ -20,10 +20,8 @@ def write_tracks(folder: Path, drive_id: str, stay: Future, points: Sequence[Poi
     """Writes all futures of a drive from their decisions on, as gzipped CSV.
 
     Args:
-        folder: where to write; it is created.
         drive_id: name of the file.
         stay: the drive itself, in which the ego keeps its route.
-        points: its decisions.
 
     Raises:
         OSError: it cannot be written.

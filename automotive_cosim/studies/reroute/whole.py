@@ -37,8 +37,6 @@ def whole_drives(
     """Drives every policy but ``never`` and ``best`` from the departure to the destination.
 
     Args:
-        job: the drive.
-        traffic: it at its departure; it is not changed.
         fresh: how copies get fresh random numbers; None without replicates.
         history: measurements of the traffic so far.
     """

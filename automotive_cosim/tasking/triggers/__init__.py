@@ -4,16 +4,24 @@ Each condition is a frozen dataclass, so it can be compared and stored; ``str`` 
 about something that does not exist (no leader, no limit, no place) does not hold.
 
 base          what a trigger is; conjunction and negation
-motion        how the car moves
+motion        how the car moves, and its own signals
 road          the road that it is on, and what comes next
 others        other vehicles on the road
 surroundings  sky, place, position fix and connection
-car           the car's own signals
 """
 
 from automotive_cosim.tasking.triggers.base import All, Not, Trigger, TriggerCondition
-from automotive_cosim.tasking.triggers.car import SignalAbove, SignalBelow, SignalHas
-from automotive_cosim.tasking.triggers.motion import Driving, OverPosted, Parked, SpeedAbove, SpeedBetween, Standing
+from automotive_cosim.tasking.triggers.motion import (
+    Driving,
+    OverPosted,
+    Parked,
+    SignalAbove,
+    SignalBelow,
+    SignalHas,
+    SpeedAbove,
+    SpeedBetween,
+    Standing,
+)
 from automotive_cosim.tasking.triggers.others import (
     BlueLightWithin,
     CollisionWithin,

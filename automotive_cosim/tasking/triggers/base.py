@@ -54,7 +54,6 @@ class Not:
     condition: TriggerCondition
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the condition does not hold."""
         return not self.condition(moment)
 
     def __str__(self) -> str:

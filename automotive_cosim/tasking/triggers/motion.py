@@ -3,12 +3,55 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from automotive_cosim.cockpit.restrictions import Motion, motion
-from automotive_cosim.cockpit.signals import MOTION
+from automotive_cosim.cockpit.signals import MOTION, Signal
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.triggers.base import ANY, STANDING_MPS, WALKING_MPS
+
+
+@dataclass(frozen=True, slots=True)
+class SignalAbove:
+    """A numeric signal is greater than ``value``, e.g. the fog on a window."""
+
+    signal: Signal[float]
+    value: float
+
+    def __call__(self, moment: Moment) -> bool:
+        return float(moment.signals[self.signal.path]) > self.value
+
+    def __str__(self) -> str:
+        return f"{self.signal.path} above {self.value:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalBelow:
+    """A numeric signal is less than ``value``, e.g. the battery's level."""
+
+    signal: Signal[float]
+    value: float
+
+    def __call__(self, moment: Moment) -> bool:
+        return float(moment.signals[self.signal.path]) < self.value
+
+    def __str__(self) -> str:
+        return f"{self.signal.path} below {self.value:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalHas:
+    """A signal has that value, e.g. a lamp that is on."""
+
+    signal: Signal[Any]
+    value: Any
+
+    def __call__(self, moment: Moment) -> bool:
+        return bool(moment.signals[self.signal.path] == self.value)
+
+    def __str__(self) -> str:
+        return f"{self.signal.path} is {'empty' if self.value == '' else self.value}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +70,6 @@ class Parked:
     """The ego is in park."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the gear is park."""
         return (
             motion(moment.signals[MOTION.GEAR.path], moment.signals[MOTION.SPEED.path]) is Motion.PARKED
             and moment.driving.speed_mps < STANDING_MPS
@@ -57,7 +99,6 @@ class SpeedAbove:
     limit_to_kmh: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether speed and limit qualify."""
         limit_mps = moment.driving.road.limit.posted_mps
         return (
             moment.driving.speed_mps * KMH_PER_MPS > self.speed_kmh
@@ -80,7 +121,6 @@ class SpeedBetween:
     to_kmh: float = ANY
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the speed is in the range."""
         return self.from_kmh < moment.driving.speed_mps * KMH_PER_MPS <= self.to_kmh
 
     def __str__(self) -> str:
@@ -96,7 +136,6 @@ class OverPosted:
     share: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether speed and limit qualify."""
         limit_mps = moment.driving.road.limit.posted_mps
         return limit_mps is not None and moment.driving.speed_mps > (1 + self.share) * limit_mps
 

@@ -16,7 +16,6 @@ class HeadwayBelow:
     seconds: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the time gap is shorter."""
         leader, speed_mps = moment.driving.around.leader, moment.driving.speed_mps
         return leader is not None and speed_mps > WALKING_MPS and leader.gap_m < self.seconds * speed_mps
 
@@ -31,7 +30,6 @@ class CollisionWithin:
     seconds: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such a leader."""
         leader = moment.driving.around.leader
         return (
             leader is not None
@@ -50,7 +48,6 @@ class LeaderWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such a leader."""
         leader = moment.driving.around.leader
         return leader is not None and leader.gap_m <= self.distance_m
 
@@ -66,7 +63,6 @@ class SlowLeaderWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such a leader."""
         leader = moment.driving.around.leader
         return (
             leader is not None
@@ -85,7 +81,6 @@ class FollowerWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such a follower."""
         follower = moment.driving.around.follower
         return follower is not None and follower.gap_m <= self.distance_m
 
@@ -100,7 +95,6 @@ class OncomingWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such an oncoming vehicle."""
         oncoming = moment.driving.around.oncoming
         return oncoming is not None and oncoming.gap_m <= self.distance_m
 
@@ -115,7 +109,6 @@ class BlueLightWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is such an emergency vehicle."""
         behind = moment.driving.around.emergency_behind
         return behind is not None and behind.gap_m <= self.distance_m
 
@@ -158,7 +151,6 @@ class OtherWayKnown:
     saves_s: float = 0.0
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether such a route is known."""
         ahead = moment.driving.ahead
         return any(ahead.eta_s - way.eta_s > self.saves_s for way in ahead.alternatives)
 
@@ -173,7 +165,6 @@ class FlowBelow:
     share: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the traffic on the ego's edge is slower."""
         return moment.driving.around.relative_speed < self.share
 
     def __str__(self) -> str:
@@ -187,7 +178,6 @@ class RedLight:
     within_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the next signal qualifies."""
         light = moment.driving.ahead.next_light
         return light is not None and light.state in "rR" and light.distance_m <= self.within_m
 

@@ -13,7 +13,6 @@ class Unposted:
     """No limit is posted here."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the context has no posted limit."""
         return moment.context.posted_limit_kmh is None
 
     def __str__(self) -> str:
@@ -27,7 +26,6 @@ class OnRoadClass:
     classes: tuple[str, ...]
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the road's class is one of these."""
         return moment.driving.road.road_class in self.classes
 
     def __str__(self) -> str:
@@ -41,7 +39,6 @@ class OnStreet:
     name: str
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the street has this name."""
         return moment.driving.road.name == self.name
 
     def __str__(self) -> str:
@@ -94,7 +91,6 @@ class Lanes:
     count: int
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the road has enough lanes."""
         return moment.driving.road.lane_count >= self.count
 
     def __str__(self) -> str:
@@ -134,7 +130,6 @@ class TunnelWithin:
     seconds: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the tunnel is near enough."""
         away_m, speed_mps = moment.driving.ahead.tunnel_distance_m, moment.driving.speed_mps
         return (
             away_m is not None
@@ -185,7 +180,6 @@ class GoalWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the remaining distance qualifies."""
         return moment.driving.ahead.route_left_m <= self.distance_m
 
     def __str__(self) -> str:
@@ -197,7 +191,6 @@ class OutOfRange:
     """The battery does not last to the destination."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the range is shorter than the remaining distance."""
         return float(moment.signals[ENERGY.RANGE.path]) < moment.driving.ahead.route_left_m
 
     def __str__(self) -> str:

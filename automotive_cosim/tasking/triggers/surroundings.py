@@ -57,7 +57,6 @@ class Dark:
     dark: bool = True
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether it is dark, or light."""
         return moment.context.sun is not None and moment.context.sun.is_set is self.dark
 
     def __str__(self) -> str:
@@ -71,7 +70,6 @@ class InCountry:
     code: str
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the context names that country."""
         return moment.context.country == self.code
 
     def __str__(self) -> str:
@@ -83,7 +81,6 @@ class GpsLost:
     """The receiver has no fix."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the receiver has no fix."""
         return moment.gps is not None and not moment.gps.has_fix
 
     def __str__(self) -> str:
@@ -95,7 +92,6 @@ class Offline:
     """The car has no link to the outside."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is no link."""
         return not moment.connectivity.online
 
     def __str__(self) -> str:

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from automotive_cosim import scenarios
 from automotive_cosim.cli.scenarios import app
-from automotive_cosim.errors import CountsError, UserError
+from automotive_cosim.errors import UserError
 from automotive_cosim.scenarios.variant import check_demand
 from automotive_cosim.studies.calibration import result
 from automotive_cosim.studies.calibration.calibrate import calibrate
@@ -243,13 +243,13 @@ def test_what_cannot_be_calibrated_is_refused_before_anything_runs(tmp_path: Pat
     def attempt(target: Path = tmp_path / "out", **options: object) -> None:
         calibrate(grid, counts, target, CalibrationOptions(**options), lambda _said, _share: None)  # type: ignore[arg-type]
 
-    with pytest.raises(CountsError, match="no counts of 9 h"):
+    with pytest.raises(UserError, match="no counts of 9 h"):
         attempt()
-    with pytest.raises(CountsError, match="no counts of 11 h"):
+    with pytest.raises(UserError, match="no counts of 11 h"):
         attempt(hours=(10, 11))
-    with pytest.raises(CountsError, match="--at 8 is not one of the calibrated hours"):
+    with pytest.raises(UserError, match="--at 8 is not one of the calibrated hours"):
         attempt(hours=(10, 10), at_hour=8)
-    with pytest.raises(CountsError, match=r"no site could be placed.*\na: the network has no edge"):
+    with pytest.raises(UserError, match=r"no site could be placed.*\na: the network has no edge"):
         attempt(hours=(8, 8))
     (tmp_path / "full").mkdir()
     (tmp_path / "full/mine.txt").touch()

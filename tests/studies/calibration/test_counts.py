@@ -11,7 +11,7 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
-from automotive_cosim.errors import CountsError
+from automotive_cosim.errors import UserError
 from automotive_cosim.studies.calibration.counts import (
     ARC,
     FLOW,
@@ -97,7 +97,7 @@ def test_plain_counts_are_read_also_gzipped_and_rows_of_several_days_have_a_medi
     ],
 )
 def test_what_cannot_be_used_is_said_in_one_line(tmp_path: Path, lines: list[str], words: str) -> None:
-    with pytest.raises(CountsError) as raised:
+    with pytest.raises(UserError) as raised:
         read_counts(_file(tmp_path, lines), PARIS)
     assert words in str(raised.value)
     assert "\n" not in str(raised.value)
@@ -107,7 +107,7 @@ def test_no_file_a_picture_and_a_cut_off_archive_are_refused(tmp_path: Path) -> 
     (tmp_path / "picture").write_bytes(b"\x89PNG\r\n\x1a\n")
     (tmp_path / "cut.gz").write_bytes(gzip.compress(b"site,hour,vehicles_per_hour\n" * 100)[:-12])
     for name in ("nowhere", "picture", "cut.gz"):
-        with pytest.raises(CountsError, match=r"give a table of counts|save it as CSV UTF-8"):
+        with pytest.raises(UserError, match=r"give a table of counts|save it as CSV UTF-8"):
             read_counts(tmp_path / name, PARIS)
 
 
@@ -173,14 +173,14 @@ def test_a_workbook_is_read_with_its_merged_cells_and_the_lines_above(tmp_path: 
     counts = read_counts(tmp_path / "counts.xlsx", PARIS)
     assert dict(counts.flows_per_h) == {("loop", 8): 515.5, ("loop", 9): 600.0}
     (tmp_path / "cut.xlsx").write_bytes((tmp_path / "counts.xlsx").read_bytes()[:400])
-    with pytest.raises(CountsError, match="not a workbook that can be read"):
+    with pytest.raises(UserError, match="not a workbook that can be read"):
         read_counts(tmp_path / "cut.xlsx", PARIS)
 
 
 def test_travel_times_are_read(tmp_path: Path) -> None:
     (found,) = read_travel_times(_file(tmp_path, ["from_edge,to_edge,hour,seconds", "a,b,8,61.5", "a,c,8,"]))
     assert (found.from_edge, found.to_edge, found.hour, found.seconds) == ("a", "b", 8, 61.5)
-    with pytest.raises(CountsError, match="lacks the column 'seconds'"):
+    with pytest.raises(UserError, match="lacks the column 'seconds'"):
         read_travel_times(_file(tmp_path, ["from_edge,to_edge,hour", "a,b,8"]))
 
 
@@ -234,7 +234,7 @@ def test_loops_are_added_up_over_the_lanes_of_an_edge_and_have_a_median_over_day
     counted, loops = _file(tmp_path, [LOOPED], "out.xml"), _file(tmp_path, [LOOPS], "loops.add.xml")
     counts = read_counts(counted, PARIS, loops)
     assert counts.flows_per_h == {("north", 0): (330 + 210) / 2}
-    with pytest.raises(CountsError, match="--sites"):
+    with pytest.raises(UserError, match="--sites"):
         read_counts(counted, PARIS)
 
 
@@ -249,7 +249,7 @@ def test_a_table_of_dfrouter_counts_cars_and_lorries_of_its_periods(tmp_path: Pa
     loops = _file(tmp_path, [LOOPS], "loops.add.xml")
     counts = read_counts(_file(tmp_path, rows), PARIS, loops)
     assert counts.flows_per_h == {("north", 8): pytest.approx(190 * 3600 / 2700)}
-    with pytest.raises(CountsError, match="detector 'c' was counted"):
+    with pytest.raises(UserError, match="detector 'c' was counted"):
         read_counts(_file(tmp_path, [*rows, *(row.replace("a;", "c;") for row in rows[1:])]), PARIS, loops)
 
 
@@ -264,6 +264,6 @@ def test_a_table_of_dfrouter_counts_cars_and_lorries_of_its_periods(tmp_path: Pa
     ],
 )
 def test_xml_that_cannot_be_used_is_said_in_one_line(tmp_path: Path, text: str, words: str) -> None:
-    with pytest.raises(CountsError, match=words) as caught:
+    with pytest.raises(UserError, match=words) as caught:
         read_counts(_file(tmp_path, [text], "edges.xml"), PARIS)
     assert "\n" not in str(caught.value)

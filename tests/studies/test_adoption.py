@@ -1,0 +1,161 @@
+"""A town in which more and more cars have an assistant: who is silent changes nothing, and how the rest is told."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import CosimError
+from automotive_cosim.run.executor import tried
+from automotive_cosim.studies.adoption.adoption import (
+    AdoptionPlan,
+    AdoptionRow,
+    AdoptionStudy,
+    Cohort,
+    ShareOutcome,
+    _Said,
+    run_seed,
+)
+from automotive_cosim.studies.adoption.page import answer, charts, effects, gone, warnings
+from automotive_cosim.studies.calls import town
+from automotive_cosim.studies.calls.town import CarTrip
+from automotive_cosim.studies.plan import plan_of
+from automotive_cosim.traffic.fork import Forked
+from tests.traffic.in_process import InProcess
+
+PLAN = AdoptionPlan("grid", seeds=(0, 1), minutes=2.0, warm_up_s=120.0, shares=(0.0, 50.0, 100.0))
+
+
+def cohort(gain_s: float) -> Cohort:
+    return Cohort(
+        cars=10,
+        arrived=9,
+        time_s=200.0 - gain_s,
+        before_s=200.0,
+        lost_s=50.0,
+        side=0.1,
+        near_s_h=3.0,
+        energy_wh_km=600.0,
+    )
+
+
+def outcome(share: float, equipped_s: float, others_s: float) -> ShareOutcome:
+    return ShareOutcome(
+        share=share,
+        equipped=cohort(equipped_s) if share else None,
+        others=cohort(others_s) if share < 1 else None,
+        all=cohort(share * equipped_s + (1 - share) * others_s),
+        reroutes=4,
+        warnings=6,
+        hazards=3,
+        failed=0,
+    )
+
+
+def study(*outcomes: ShareOutcome) -> AdoptionStudy:
+    rows = [AdoptionRow(id=f"seed{seed}", scenario="grid", seed=seed, shares=outcomes) for seed in PLAN.seeds]
+    return AdoptionStudy(Path(), {}, PLAN, tuple(rows))
+
+
+def test_herding_is_what_is_gone_of_the_first_gain() -> None:
+    found = study(outcome(0.0, 0, 0), outcome(0.05, 40, 1), outcome(0.5, 10, -2), outcome(1.0, -5, 0))
+    assert gone(found) == (0.05, 0.5, 0.75)
+    assert "75% of the gain is gone" in answer(found)
+    assert "5.0 s later per car" in answer(found)
+    assert [row[0] for row in effects(found).rows] == ["0%", "5%", "50%", "100%"]
+    assert set(charts(found)) == {"gains"}
+    assert any("had not ended" in warning for warning in warnings(found))
+    assert gone(study(outcome(0.05, -3, 1), outcome(0.5, 10, -2))) is None
+
+
+def test_warnings_of_one_kind_on_one_road_within_a_minute_are_of_one_hazard() -> None:
+    said = _Said(
+        warned=[("traffic", "a", 0.0), ("traffic", "a", 59.0), ("traffic", "b", 1.0), ("slippery", "a", 2.0)]
+    )
+    assert said.hazards == 3
+    said.warned.append(("traffic", "a", 119.0))
+    assert said.hazards == 4
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"agent": "best"}, "best"),
+        ({"agent": "nobody"}, "nobody"),
+        ({"shares": (5.0, 5.0)}, "--shares"),
+        ({"shares": (101.0,)}, "--shares"),
+        ({"driver": "averag"}, "average"),
+        ({"incidents": ("breakdown edge=nowhere position_m=1",)}, "nowhere"),
+    ],
+)
+def test_what_cannot_be_run_is_refused_in_a_line(changed: dict[str, object], told: str) -> None:
+    with pytest.raises(CosimError, match=told) as refused:
+        replace(PLAN, **changed).check()  # type: ignore[arg-type]
+    assert "\n" not in str(refused.value)
+
+
+def test_a_plan_is_read_back() -> None:
+    assert plan_of(AdoptionPlan, PLAN.as_json()) == PLAN
+
+
+def trips_with(warm: Forked, share: float, seconds: float) -> Mapping[str, CarTrip]:
+    with closing(warm.road()) as road:
+        road.call(town.equip, share, 1, "average")
+        for _ in range(round(seconds)):
+            road.run(1.0)
+            for car in road.entered():
+                assert car.state.time_s == road.time_s
+        trips: Mapping[str, CarTrip] = road.call(town.trips_of)
+        return trips
+
+
+def test_silent_assistants_change_nothing_and_none_is_plain_sumo(sumo: None) -> None:
+    scenario = PLAN.scene()
+    with closing(Forked(scenario, 1)) as warm:
+        warm.call(town.follow_town)
+        none, all_ = trips_with(warm, 0.0, 90), trips_with(warm, 1.0, 90)
+    assert len(none) > 20
+    assert all_ == none
+    with closing(InProcess(scenario, 1)) as plain:
+        world = plain.world
+        assert world is not None
+        bare = town.Town(
+            world._sumo,
+            world.step_s,
+            frozenset(
+                each.edge_id for each in world.network.edges.values() if each.road_class in town.SIDE_STREETS
+            ),
+        )
+        for _ in range(90):
+            world._sumo.step()
+            bare.after_step()
+        assert bare.trips == none
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("agent", ["never", "always", "silent", "alert-often"])
+def test_a_study_of_an_agent(agent: str, sumo: None, tmp_path: Path) -> None:
+    plan = replace(PLAN, agent=agent, seeds=(1,), every_s=20.0)
+    plan.check()
+    row = tried(run_seed)(plan.jobs()[0], tmp_path)
+    assert row.error is None
+    none, half, full = row.shares
+    assert (none.share, half.share, full.share) == (0.0, 0.5, 1.0)
+    assert none.equipped is None
+    assert full.others is None
+    assert half.equipped
+    assert half.others
+    assert none.all.time_s == none.all.before_s
+    if agent in ("never", "silent"):
+        assert half.all == full.all == none.all
+        assert full.reroutes == full.warnings == 0
+    elif agent == "always":
+        assert full.reroutes > half.reroutes > 0
+        assert full.all != none.all
+    else:
+        assert full.warnings > half.warnings > 0
+        assert full.failed == 0
