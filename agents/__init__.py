@@ -14,6 +14,7 @@ from automotive_cosim.agents.by_calls import OracleByCalls
 from automotive_cosim.agents.caller import Caller, tools
 from automotive_cosim.agents.guest import classes_in, load
 from automotive_cosim.agents.human import Human
+from automotive_cosim.agents.limits import LimitTeller
 from automotive_cosim.agents.model_agent import ModelAgent
 from automotive_cosim.agents.native import FORMATS, NativeAgent, chosen
 from automotive_cosim.agents.oracle import Oracle
@@ -84,6 +85,14 @@ SIMPLE: Mapping[str, AgentEntry] = {
     "always-alert": _control(AlwaysAlert, "warns at once, whatever happens"),
     "always-ask": _control(AlwaysAsk, "asks the driver what is meant, and declares complete"),
     "human": AgentEntry(lambda settings: Human(), "you, with numbered elements on the terminal", by_touch=True),
+    "limit-law": AgentEntry(
+        lambda settings: LimitTeller(knows_law=True),
+        "tells the speed limit, by sign or by law, in this weather, and nothing else",
+        "scripted",
+    ),
+    "limit-sign": AgentEntry(
+        lambda settings: LimitTeller(knows_law=False), "tells the speed limit on the last sign alone", "scripted"
+    ),
     "no-op": _control(NoOp, "waits and declares nothing"),
     "oracle": AgentEntry(
         lambda settings: (

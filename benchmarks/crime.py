@@ -65,8 +65,7 @@ def approaches() -> list[dict[str, Any]]:
 def readings(trial: Path) -> list[dict[str, Any]]:
     """Readings of a recorded trial, in the frame of the follower: x along its heading from its front bumper."""
     from automotive_cosim.exchange.recording import read_recording
-    from automotive_cosim.measures import EncounterKind, pair_readings
-    from automotive_cosim.measures.encounters import PairOrder
+    from automotive_cosim.measures.encounters import EncounterKind, PairOrder, pair_readings
 
     seconds = read_recording(trial).road.seconds
     vehicles = {second.at_s: {each.vehicle_id: each for each in second.vehicles} for second in seconds}

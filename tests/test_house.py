@@ -26,37 +26,37 @@ ROOM = (60, 2, 2)
 OTHERS = "beside them"
 
 CEILINGS = {
-    "agents": (6380, 65, 0),
-    "benchmarks": (2302, 16, 0),
-    "cli": (4428, 13, 186),
+    "agents": (6453, 66, 0),
+    "benchmarks": (2301, 16, 0),
+    "cli": (4445, 13, 186),
     "cockpit": (17814, 176, 0),
     "contracts": (1452, 62, 0),
     "cosim": (524, 3, 0),
     "doors": (1718, 14, 0),
-    "drives": (7497, 81, 0),
+    "drives": (7498, 81, 0),
     "envs": (1592, 12, 0),
     "episode": (1896, 20, 0),
     "exchange": (3381, 11, 0),
     "formats": (2750, 36, 0),
     "geo": (3484, 38, 0),
     "interface": (1533, 5, 0),
-    "measures": (920, 8, 0),
+    "measures": (899, 8, 0),
     "models": (2156, 24, 0),
     "osm": (6341, 43, 0),
-    "proof": (2989, 16, 0),
+    "proof": (2991, 16, 0),
     "publish": (1471, 7, 0),
     "replay": (189, 1, 0),
     "report": (5333, 24, 0),
-    "run": (8281, 79, 0),
-    "safety": (4050, 31, 0),
+    "run": (8283, 79, 0),
+    "safety": (4241, 33, 0),
     "scenarios": (1981, 8, 0),
     "schemas": (84, 0, 0),
     "serve": (2603, 22, 0),
     "service": (393, 4, 0),
     "studies": (13261, 120, 92),
-    "tasking": (5593, 125, 0),
+    "tasking": (5615, 125, 0),
     "tasks": (15, 0, 0),
-    "tests": (63165, 123, 0),
+    "tests": (63268, 123, 0),
     "traffic": (12285, 80, 0),
     "view": (1771, 15, 0),
     "beside them": (319, 15, 0),
@@ -64,7 +64,7 @@ CEILINGS = {
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
 
-DATA_LINES, WIDTH = 14_950, 130
+DATA_LINES, WIDTH = 15_227, 130
 """Lines of the tasks' files, with every phrasing, and characters of the longest."""
 
 

@@ -12,31 +12,13 @@ import signal
 import sys
 import threading
 from contextlib import nullcontext
+from functools import cache
+from pkgutil import resolve_name
 from typing import Annotated
 
 import typer
 
 from automotive_cosim import __version__
-from automotive_cosim.cli import (
-    a2a,
-    agents,
-    bench,
-    compare,
-    doctor,
-    evaluate,
-    export,
-    keep,
-    mcp,
-    measures,
-    publish,
-    results,
-    run,
-    scenarios,
-    search,
-    serve,
-    show,
-    tasks,
-)
 from automotive_cosim.cli.options import CONTENTS, READ, RUN, TOOLS
 from automotive_cosim.cli.terminal import discard_output, json_alone, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
@@ -50,36 +32,65 @@ TERMINATED = 143
 CLOSED_PIPE = 141
 """The same for SIGPIPE: who read the output, such as ``head``, has had enough."""
 
-app = typer.Typer(
-    name="automotive-cosim",
-    help="Agents that operate the cockpit of a car in live SUMO traffic.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+COMMANDS = (
+    ("run", "run:run", RUN),
+    ("eval", "evaluate:evaluate", RUN),
+    ("search", "search:search", RUN),
+    ("serve", "serve:serve", READ),
+    ("report", "results:report", READ),
+    ("compare", "compare:compare", READ),
+    ("replay", "results:replay", READ),
+    ("attribute", "results:attribute", READ),
+    ("measures", "measures:measures", READ),
+    ("export", "export:export", READ),
+    ("publish", "publish:app", READ),
+    ("tasks", "tasks:app", CONTENTS),
+    ("scenarios", "scenarios:app", CONTENTS),
+    ("agents", "agents:app", CONTENTS),
+    ("show", "show:app", CONTENTS),
+    ("doctor", "doctor:doctor", TOOLS),
+    ("bench", "bench:bench", TOOLS),
+    ("keep", "keep:keep", TOOLS),
+    ("mcp", "mcp:mcp", TOOLS),
+    ("a2a", "a2a:a2a", TOOLS),
 )
-app.command(rich_help_panel=RUN)(run.run)
-app.command("eval", rich_help_panel=RUN)(evaluate.evaluate)
-app.command(rich_help_panel=RUN)(search.search)
-app.command(rich_help_panel=READ)(serve.serve)
-app.command(rich_help_panel=READ)(results.report)
-app.command(rich_help_panel=READ)(compare.compare)
-app.command(rich_help_panel=READ)(results.replay)
-app.command(rich_help_panel=READ)(results.attribute)
-app.command(rich_help_panel=READ)(measures.measures)
-app.command(rich_help_panel=READ)(export.export)
-app.add_typer(publish.app, name="publish", rich_help_panel=READ)
-app.add_typer(tasks.app, name="tasks", rich_help_panel=CONTENTS)
-app.add_typer(scenarios.app, name="scenarios", rich_help_panel=CONTENTS)
-app.add_typer(agents.app, name="agents", rich_help_panel=CONTENTS)
-app.add_typer(show.app, name="show", rich_help_panel=CONTENTS)
-app.command(rich_help_panel=TOOLS)(doctor.doctor)
-app.command(rich_help_panel=TOOLS)(bench.bench)
-app.command(rich_help_panel=TOOLS)(keep.keep)
-app.command(rich_help_panel=TOOLS)(mcp.mcp)
-app.command(rich_help_panel=TOOLS)(a2a.a2a)
-for extension in extensions():
-    extension.add_commands(app, {"scenarios": scenarios.app})
+"""Their names, where they are, and in which part of the list they stand. Extensions add more."""
+EXTENDED = "scenarios"
+"""The group to which extensions add commands."""
+
+
+@cache
+def made(asked: str = "") -> typer.Typer:
+    """The command line; of the commands above only the one that is asked for, if it is one of them, because to
+    import the others takes longer than most commands do."""
+    app = typer.Typer(
+        name="automotive-cosim",
+        help="Agents that operate the cockpit of a car in live SUMO traffic.",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback()(_options)
+    alone = [row for row in COMMANDS if row[0] == asked]
+    groups = {}
+    for name, where, panel in alone or COMMANDS:
+        command = resolve_name(f"automotive_cosim.cli.{where}")
+        if isinstance(command, typer.Typer):
+            app.add_typer(command, name=name, rich_help_panel=panel)
+            groups[name] = command
+        else:
+            app.command(name, rich_help_panel=panel)(command)
+    if not alone or asked == EXTENDED:
+        for extension in extensions():
+            extension.add_commands(app, groups)
+    return app
+
+
+def __getattr__(name: str) -> typer.Typer:
+    if name == "app":
+        return made()
+    raise AttributeError(name)
 
 
 def _version(wanted: bool) -> None:
@@ -88,7 +99,6 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
@@ -139,7 +149,8 @@ def main() -> None:
 def _run() -> int:
     """Runs a command; returns the exit code."""
     try:
-        return app(standalone_mode=False) or 0
+        asked = next((word for word in sys.argv[1:] if not word.startswith("-")), "")
+        return made(asked)(standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise

@@ -43,8 +43,14 @@ def measures(
     from automotive_cosim.exchange.needs import check_formats
     from automotive_cosim.exchange.trajectories import write_frame
     from automotive_cosim.formats.writing import write_whole
-    from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
-    from automotive_cosim.measures.encounters import as_csv, as_frame
+    from automotive_cosim.measures.encounters import (
+        Encounter,
+        PairReading,
+        as_csv,
+        as_frame,
+        encounters,
+        pair_readings,
+    )
     from automotive_cosim.run.road import read_record, roads_in
 
     roads = {"": record} if record.is_file() else roads_in(record)

@@ -187,7 +187,7 @@ class CockpitTools:
             Field(description="Ids, patterns, modules, general, safety or all; separated by commas."),
         ] = "all",
         suite: Annotated[
-            str, Field(description="standard, hard, limits, clarify or all; an id names its task in any.")
+            str, Field(description="standard, hard, limits, clarify, speed or all; an id names its task in any.")
         ] = "standard",
     ) -> CallToolResult:
         """List the tasks that `start` takes, with their halves."""

@@ -10,7 +10,8 @@ from automotive_cosim.drives.harm import distraction_s
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.session import DriveSession
-from automotive_cosim.measures import exposure, following_figures
+from automotive_cosim.measures.exposure import exposure
+from automotive_cosim.measures.following import following_figures
 
 
 def figures(session: DriveSession) -> dict[str, Any]:

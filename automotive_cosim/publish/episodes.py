@@ -15,7 +15,7 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import opened
 from automotive_cosim.interface.trace import SAID, Step, element, plain, sha256
-from automotive_cosim.measures import nearest_s
+from automotive_cosim.measures.following import nearest_s
 from automotive_cosim.publish.drives import PLANNED as DRIVE_PLANNED
 from automotive_cosim.publish.drives import UNJUDGED as DRIVE_UNJUDGED
 from automotive_cosim.publish.drives import drive_problems

@@ -23,7 +23,8 @@ from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
 from automotive_cosim.geo.reckoning import reckon
 from automotive_cosim.interface.trace import Step
-from automotive_cosim.measures import exposure, following_figures
+from automotive_cosim.measures.exposure import exposure
+from automotive_cosim.measures.following import following_figures
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.figures import (
     DriverLoad,

@@ -9,7 +9,8 @@ from typing import Annotated
 
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.specification import End
-from automotive_cosim.measures import ExposureCell, FollowingFigures
+from automotive_cosim.measures.exposure import ExposureCell
+from automotive_cosim.measures.following import FollowingFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.sets import Split

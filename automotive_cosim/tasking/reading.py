@@ -8,7 +8,8 @@
 ``moves``, ``ways`` and ``slips``, ``goal`` and a trigger's condition are in the two languages of ``notation``. A
 class is written as a table of its fields, or as a list of them in order. ``default`` is what every task of the file
 is like, ``names`` has what several share: where a table or a list is expected a name stands for it, and ``like``
-gives a table what a named one has. ``second`` states what differs from the first half.
+gives a table what a named one has. ``second`` states what differs from the first half. A table with ``each`` is a
+family: one task for each of its tables, named after both, which say what differs from the family.
 """
 
 from __future__ import annotations
@@ -58,6 +59,8 @@ OF = "of"
 """Of a parameter's table: the values that are drawn. The other columns are what each of them means."""
 IS, LIKE = "is", "like"
 """Of any table: further fields of it, to have several on a line; and the name of what it is like besides."""
+EACH = "each"
+"""Of a task's table: what its family's members are like, by the ends of their names."""
 COMPANY = "company"
 """Written for ``aboard``: one to four adults, the driver among them, drawn as the parameter ``occupants``."""
 OCCUPANTS = (1, 2, 3, 4)
@@ -121,21 +124,33 @@ def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> It
     if check is not None and (steps := next(_too_long(table), None)) is not None:
         raise document.refused(steps, f"is longer than {bounds.TASK_TEXT:,} characters")
     names = {**shared.names, **own}
-    for task_id, entry in table.items():
-        if task_id in (DEFAULT, NAMES):
-            continue
+    for home, family, entry in _members(table):
+        task_id = "_".join(map(str, (home[0], *home[2:])))
         reader = _Reader(task_id, names, shared, cost, check)
         try:
             cost.add(bounds.TASK_COST // MOST_TASKS)
-            cost.add_all(table.get(DEFAULT, {}))
-            yield reader.task(entry, reader.table(table.get(DEFAULT, {}), {}))
+            cost.add_all(common := table.get(DEFAULT, {}))
+            cost.add_all(family)
+            yield reader.task(entry, reader.table(family, reader.table(common, {})))
         except UserError as error:
-            raise document.refused(_found(table, task_id, (*reader.steps, *reader.below)), str(error)) from error
+            raise document.refused(_found(table, home, (*reader.steps, *reader.below)), str(error)) from error
         except (TypeError, ValueError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
             why = "nested too deeply, or like itself" if isinstance(error, RecursionError) else str(error)
             if isinstance(error, TypeError | AttributeError):
                 why = f"another kind of value is expected there ({why})"
-            raise document.refused(_found(table, task_id, reader.steps), f"cannot be read: {why}") from error
+            raise document.refused(_found(table, home, reader.steps), f"cannot be read: {why}") from error
+
+
+def _members(table: Mapping[str, Any]) -> Iterator[tuple[Steps, Mapping[str, Any], Any]]:
+    """Where every task stands, what its family is like, and its own table."""
+    for name, entry in table.items():
+        if name in (DEFAULT, NAMES):
+            continue
+        if isinstance(entry, Mapping) and isinstance(entry.get(EACH), Mapping):
+            family = {key: value for key, value in entry.items() if key != EACH}
+            yield from (((name, EACH, end), family, own) for end, own in entry[EACH].items())
+        else:
+            yield (name,), {}, entry
 
 
 MOST_HOLES = 3
@@ -186,14 +201,18 @@ def _too_long(table: Mapping[str, Any]) -> Iterator[Steps]:
     return (steps for steps, part in _parts(table) if isinstance(part, str) and len(part) > bounds.TASK_TEXT)
 
 
-def _found(table: Mapping[str, Any], task_id: str, steps: Steps) -> Steps:
-    """Where a field of a task stands: in its table, in ``is``, in the first half or in what every task is like."""
+def _found(table: Mapping[str, Any], home: Steps, steps: Steps) -> Steps:
+    """Where a field of a task stands: in its table, in ``is``, in its first half or its family, or in what every
+    task is like."""
     shorter = (steps, steps[1:]) if steps[:1] == ("second",) else (steps,)
-    for name in (task_id, DEFAULT):
+    for place in (home, home[:1], (DEFAULT,)):
+        holder: Any = table
+        for step in place:
+            holder = holder.get(step, {}) if isinstance(holder, Mapping) else {}
         for each in shorter:
-            if each and (found := _within(table.get(name, {}), each)):
-                return (name, *found)
-    return (task_id, *steps)
+            if each and (found := _within(holder, each)):
+                return (*place, *found)
+    return (*home, *steps)
 
 
 def _within(holder: Any, steps: Steps) -> Steps:

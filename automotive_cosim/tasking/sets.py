@@ -16,6 +16,9 @@ class Suite(StrEnum):
     """Pairs about what a car cannot do: what is asked for is missing in one half, and the driver has to be told."""
     CLARIFY = "clarify"
     """Pairs about wishes that leave something open: only the driver knows it, or the car does too."""
+    SPEED = "speed"
+    """Pairs about which speed limit holds: by country, weather, hour, and what is signed ahead. They are families,
+    said in the same words in many places: evidence for rows of a protocol rather than new kinds of wishes."""
 
     @property
     def max_steps(self) -> int:

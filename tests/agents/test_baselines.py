@@ -7,6 +7,7 @@ import pytest
 
 from automotive_cosim.agents import Human, PressEverything, Random
 from automotive_cosim.agents.human import understood
+from automotive_cosim.agents.limits import LimitTeller
 from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import UNCALLED, Action, ActionType, Direction, GoalStatus, Reason
 from automotive_cosim.errors import ActionError
@@ -98,3 +99,30 @@ def test_the_end_of_the_input_interrupts(observation):
 
     with pytest.raises(KeyboardInterrupt):
         Human(ended, io.StringIO()).act(observation("x"))
+
+
+UNSIGNED = """Speed limit here: not posted
+Default limit: 130 km/h on motorways (FR, verified)
+Reduced limit: 110 km/h on motorways in rain or other precipitation (FR, verified)
+Reduced limit: 50 km/h everywhere with visibility under 50 m (FR, verified)
+Weather: {weather}, wind 14 km/h"""
+
+
+@pytest.mark.parametrize(
+    ("context", "by_sign", "by_law"),
+    [
+        (UNSIGNED.format(weather="clear, 14 °C, humidity 55 %, visibility 20000 m (good)"), None, 130.0),
+        (UNSIGNED.format(weather="rain, 14 °C, humidity 92 %, 1.6 mm/h, visibility 7000 m (good)"), None, 110.0),
+        (UNSIGNED.format(weather="fog, 6 °C, humidity 99 %, visibility 40 m (dense)"), None, 50.0),
+        ("Speed limit here: 30 mph (posted on Euston Road)\nWeather: fog, visibility 900 m", 48.3, 48.3),
+        ("Speed limit here: none posted\nDefault limit: none on motorways (DE, verified)", None, None),
+    ],
+)
+def test_who_reads_signs_alone_tells_less_than_who_knows_the_law(observation, context, by_sign, by_law):
+    for knows_law, kmh in ((False, by_sign), (True, by_law)):
+        agent = LimitTeller(knows_law=knows_law)
+        seen = replace(observation("x"), context=context)
+        told = check(agent.act(seen))
+        assert told.speed_kmh == kmh
+        assert kmh is None or check(agent.act(seen)).goal_status is GoalStatus.COMPLETE
+        assert agent.act(replace(seen, on_watch=True)).action_type is ActionType.WAIT

@@ -91,9 +91,7 @@ def test_a_terminal_that_knows_ascii_alone_gets_the_whole_record(cli, tmp_path, 
 
 
 def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(program, tmp_path):
-    (tmp_path / "gymnasium.py").write_text(
-        "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n"
-    )
+    (tmp_path / "typer.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n")
     code = "from automotive_cosim_main import main; main()"
     process = program(sys.executable, "-c", code, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     said, _ = process.communicate(timeout=60)

@@ -175,6 +175,14 @@ STATEMENTS: list[tuple[str, str, Mapping[str, object], object]] = [
     ("JP.high_beam", "52", NIGHT, "applies"),
     ("JP.high_beam", "52", NIGHT | {"oncoming_m": 150.0}, "forbidden"),
     ("JP.front_fog", "Order 20", {}, "allowed"),
+    # Austria and the Netherlands
+    ("AT.limit.motorway", "20(2)", MOTORWAY, 130),
+    ("AT.limit.built_up", "20(2)", TOWN, 50),
+    ("AT.limit.rural", "20(2)", {}, 100),
+    ("NL.limit.motorway", "21", MOTORWAY, 130),
+    ("NL.limit.built_up", "20", TOWN, 50),
+    ("NL.limit.expressway", "21", {"expressway": True}, 100),
+    ("NL.limit.rural", "21", {}, 80),
     # Switzerland
     ("CH.limit.built_up", "Art. 4a", TOWN, 50),
     ("CH.limit.rural", "Art. 4a", {}, 80),

@@ -8,17 +8,16 @@ from math import cos, hypot, radians, sin
 import pytest
 
 from automotive_cosim.contracts import SeenVehicle
-from automotive_cosim.measures import (
-    DEFAULT_THRESHOLDS,
-    DriveStretch,
+from automotive_cosim.measures.encounters import (
     Encounter,
     EncounterKind,
-    Thresholds,
+    PairOrder,
+    RoadScene,
+    as_csv,
     encounters,
-    exposure,
     pair_readings,
 )
-from automotive_cosim.measures.encounters import PairOrder, RoadScene, as_csv
+from automotive_cosim.measures.exposure import DriveStretch, exposure
 from automotive_cosim.measures.formulas import (
     crossing_drac_mps2,
     delta_v_mps,
@@ -27,6 +26,7 @@ from automotive_cosim.measures.formulas import (
     headway_time_s,
     required_deceleration_mps2,
 )
+from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS, Thresholds
 
 LENGTH_M, WIDTH_M, STEP_S = 5.0, 2.0, 0.1
 Way = Callable[[float], tuple[float, float]]

@@ -13,6 +13,7 @@ from automotive_cosim.run.difficulty import Difficulty, Outcomes, WonBy
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.plan import choose
 from automotive_cosim.run.row import as_json
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 
@@ -143,7 +144,7 @@ def test_the_core_keeps_the_order_of_the_contestants():
 def test_core_is_a_word_that_chooses_sixty_tasks_of_all_suites():
     assert set(choose(["core"])) == set(record.shipped().core)
     assert len(choose(["core"])) == 60
-    assert {CATALOGUE[each].suite for each in choose(["core"])} == {task.suite for task in CATALOGUE.values()}
+    assert {CATALOGUE[each].suite for each in choose(["core"])} == set(Suite) - {Suite.SPEED}, "untried so far"
 
 
 def test_a_half_that_has_changed_is_not_measured(monkeypatch):

@@ -17,7 +17,8 @@ from automotive_cosim.drives.judge import EventOutcome, JudgedEvent
 from automotive_cosim.drives.score import together
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import STEPS, TRIAL
-from automotive_cosim.measures import ExposureCell, FollowingFigures
+from automotive_cosim.measures.exposure import ExposureCell
+from automotive_cosim.measures.following import FollowingFigures
 from automotive_cosim.report.stats import rate_upper_bound
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import as_json

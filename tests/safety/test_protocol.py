@@ -23,6 +23,7 @@ from automotive_cosim.safety.dossier.subject import read_subject
 from automotive_cosim.safety.protocol.calculator import COMMAND, Scores, points
 from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, evidence, protocol
 from automotive_cosim.safety.protocol.page import NO_RATING, write_protocol
+from automotive_cosim.safety.protocol.told import told_on
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 
@@ -79,6 +80,30 @@ def test_trials_speak_for_their_rows_by_country(tmp_path: Path) -> None:
     assert {country: each.holds for country, each in towns.by_country.items()} == {"FR": False, "DE": False}
     assert (rain.holds, towns.holds, snow.holds) == (True, False, None)
     assert len(rows["Climate controls"].trials) == 2
+
+
+TIMELINE = {
+    "time_s": [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
+    "limit_kmh": [None, 50.0, 50.0, 50.0, 30.0, 30.0],
+    "speed_kmh": [36.0] * 6,
+}
+
+
+@pytest.mark.parametrize(
+    ("told", "share", "first", "second"),
+    [
+        ([(2.0, 50.0), (4.0, 30.0)], 4 / 5, (50.0, 1.0, 10.0), (30.0, 0.0, 0.0)),
+        ([(1.0, 50.0)], 3 / 5, (50.0, 0.0, 0.0), (None, None, None)),
+        ([(1.0, 70.0), (3.0, 50.0)], 1 / 5, (70.0, 2.0, 20.0), (None, None, None)),
+    ],
+)
+def test_a_limit_is_told_so_many_seconds_and_metres_late_and_so_far_off(told, share, first, second):
+    row = make_plan({"agents": ["asurada"], "drives": ["grid_june"], "seeds": [0]}).jobs()[0].planned()
+    made = told_on(row, told, TIMELINE)
+    assert made.share == pytest.approx(share)
+    assert [(each.told_kmh, each.after_s, each.after_m) for each in made.limits] == [first, second]
+    assert made.limits[0].off_kmh == first[0] - 50.0
+    assert made.limits[0].in_time
 
 
 def fake(folder: Path, monkeypatch: pytest.MonkeyPatch, answer: object) -> None:

@@ -7,12 +7,14 @@ from dataclasses import replace
 
 import pytest
 
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.occupants import Kind, Seat
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.instance import draw, instances
 from automotive_cosim.tasking.own_files import check
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Basis, Differs, Dimension, Module, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
@@ -30,6 +32,19 @@ LEAST = {
     Module.COMMS: (6, 2, 1, 1),
 }
 """By dimension, in ``Dimension``'s order; 185 together."""
+
+
+SPEED = [task for task in TASKS if task.suite is Suite.SPEED]
+FAMILIES = {text for task in SPEED for text in task.templates}
+
+
+def test_the_suite_of_speed_limits_is_of_families_in_all_languages():
+    families = Counter(task.templates for task in SPEED)
+    assert len(SPEED) >= 60
+    assert len(families) >= 9
+    assert len(FAMILIES) == sum(map(len, families)), "a family's words are its own"
+    assert min(families.values()) >= 4
+    assert all(task.second is not None and task.languages == tuple(Language) for task in SPEED)
 
 
 def halves(task: Task):
@@ -139,7 +154,14 @@ def test_no_two_tasks_share_goal_trigger_and_reference_solution():
 
 
 def test_no_text_belongs_to_two_tasks():
-    said = Counter(text.casefold() for task in TASKS for text in set(task.templates))
+    """But to the members of a family of the suite of speed limits."""
+    said = Counter(
+        text.casefold()
+        for text in (
+            *FAMILIES,
+            *(text for task in TASKS if task.suite is not Suite.SPEED for text in set(task.templates)),
+        )
+    )
     assert [text for text, count in said.items() if count > 1] == []
 
 

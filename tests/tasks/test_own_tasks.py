@@ -64,6 +64,24 @@ def read(folder: Path, text: str, name: str = "own.toml") -> Catalogue:
     return catalogue
 
 
+FAMILY = DATA.replace("[own_pair]", "[own]").replace(
+    "second = {",
+    "each.north.start.origin = [2.5, 50]\neach.south = { goal = 'phone.do_not_disturb = true' }\nsecond = {",
+)
+
+
+def test_a_family_is_a_task_for_each_of_its_members(tmp_path):
+    family = read(tmp_path, FAMILY)
+    assert list(family) == ["own_north", "own_south"]
+    north, south = family.values()
+    assert (north.templates, north.second) == (south.templates, south.second)
+    assert north.first.start.origin == (2.5, 50)
+    assert south.first.start.origin is None
+    assert north.first.goal != south.first.goal
+    with pytest.raises(UserError, match=r"own.toml line 18 \[own\]: each.south.gaol"):
+        read(tmp_path, FAMILY.replace("south = { goal", "south = { gaol"))
+
+
 def test_a_folder_joins(tmp_path):
     assert read(tmp_path, OWN, "own.py")["own_sync"].optimal_steps == 3
     assert list(read(tmp_path, DATA)) == ["own_sync", "own_pair"]

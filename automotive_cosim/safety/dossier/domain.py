@@ -10,8 +10,7 @@ from automotive_cosim.contracts.given import Language
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.order import ordered
-from automotive_cosim.measures import ExposureCell
-from automotive_cosim.measures.exposure import BANDS_KMH, band_named
+from automotive_cosim.measures.exposure import BANDS_KMH, ExposureCell, band_named
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.trial import NO_MODEL

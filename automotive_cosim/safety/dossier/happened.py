@@ -12,7 +12,7 @@ from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.judge import EventOutcome
-from automotive_cosim.measures import DEFAULT_THRESHOLDS
+from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.stats import CONFIDENCE
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.attribution import NOT_MEASURED, culprit, path_of, read_effects

@@ -1,4 +1,5 @@
-"""Trials of an agent as evidence for the rows of a car's protocol, and the points of the protocol's own calculator.
+"""Trials of an agent as told       the limits that were told, when, and how far off
+evidence for the rows of a car's protocol, and the points of the protocol's own calculator.
 
 evidence   which trials speak for which row
 calculator runs the calculator in an environment of its own

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from importlib.resources import files
@@ -15,6 +15,7 @@ from automotive_cosim.formats.toml import read_toml
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.safety.dossier.subject import Subject
+from automotive_cosim.safety.protocol.told import SHARE, DriveTold
 from automotive_cosim.tasking.task import Dimension
 
 PARTS: Mapping[str, tuple[str, tuple[str, ...]]] = {
@@ -111,9 +112,24 @@ def protocol(name: str) -> Protocol:
     return read_toml(Path(str(files(__package__).joinpath(NAMES[name])))).read(Protocol)
 
 
-def evidence(made: Protocol, subject: Subject) -> list[Evidence]:
-    """What speaks for each row, in the order of the protocol's file."""
-    return [Evidence(row, tuple(_trials(row, subject))) for row in made.rows]
+def evidence(made: Protocol, subject: Subject, drives: Sequence[DriveTold] = ()) -> list[Evidence]:
+    """What speaks for each row, in the order of the protocol's file.
+
+    Args:
+        made: the protocol.
+        subject: whose trials.
+        drives: on which limits were told; the accuracy's rows are about these.
+    """
+    told = {
+        "Distance based": tuple(ProtocolTrial(each.trial, each.country, each.share >= SHARE) for each in drives),
+        "Event based": tuple(
+            ProtocolTrial(each.trial, each.country, each.in_time) for drive in drives for each in drive.limits
+        ),
+    }
+    return [
+        Evidence(row, told[row.name] if row.part == "accuracy" else tuple(_trials(row, subject)))
+        for row in made.rows
+    ]
 
 
 def _trials(row: ProtocolRow, subject: Subject) -> Iterator[ProtocolTrial]:

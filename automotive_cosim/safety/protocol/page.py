@@ -15,6 +15,7 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.safety.dossier.subject import read_subject, share_told
 from automotive_cosim.safety.protocol.calculator import Scores, points
 from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, evidence, protocol
+from automotive_cosim.safety.protocol.told import LimitTold, limits_told
 
 FOLDER = "protocol"
 NO_RATING = "This is evidence about an agent, from trials in simulation. It is never a rating of a car."
@@ -45,7 +46,8 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
         UserError: there is no such protocol, or no judged trial, or the folder cannot be written.
     """
     made, subject = protocol(name), read_subject(folder, agent)
-    found = evidence(made, subject)
+    drives, asked = limits_told(subject)
+    found = evidence(made, subject, drives)
     scores: tuple[Scores, Scores] = ({}, {})
     unscored = ""
     try:
@@ -64,10 +66,11 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
         ),
         heads=4,
     )
+    told = _told([*(each for drive in drives for each in drive.limits), *asked])
     target = folder / FOLDER
     try:
         with drafted(make_folder(folder, FOLDER) / f"{name}.html") as page:
-            for table in (*tables, trials):
+            for table in (*tables, told, trials):
                 write_whole(target / f"{table.name}.csv", table.csv())
             tried = sum(bool(each.trials) for each in found)
             sentence = f"{subject.label}: trials for {tried} of {counted(len(found), 'row')}"
@@ -79,6 +82,8 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
                     calculator=f"{made.package} {made.version}, sha256 {made.sha256}",
                     notes=(COUNTS, unscored or BRACKET),
                     tables=tables,
+                    told=told if told.rows else None,
+                    shares=[(each.trial, f"{each.share:.0%}") for each in drives],
                     trials=trials,
                 ).encode()
             )
@@ -114,3 +119,30 @@ def _points(names: Sequence[str], scores: tuple[Scores, Scores]) -> str:
     least, most = (sum(score[name][0] for name in names) for score in scores)
     told = rounded(least, 2) if least == most else f"{rounded(least, 2)} to {rounded(most, 2)}"
     return f"{told} of {rounded(sum(scores[0][name][1] for name in names), 2)}"
+
+
+def _told(limits: Sequence[LimitTold]) -> Table:
+    """Each limit that began to hold, and what was told of it."""
+
+    def figure(value: float | None, digits: int = 0) -> str:
+        return "–" if value is None else f"{value:.{digits}f}"
+
+    rows = (
+        (
+            each.trial,
+            each.country or "?",
+            figure(each.at_s),
+            figure(each.limit_kmh),
+            figure(each.told_kmh),
+            figure(each.off_kmh),
+            figure(each.after_s, 1),
+            figure(each.after_m),
+        )
+        for each in limits
+    )
+    columns = ("Trial", "Country", "At s", "Limit km/h", "Told km/h", "Off km/h", "After s", "After m")
+    note = (
+        "On a drive, from where a limit begins to hold, by sign or verified law; on a task, from the hand-over. "
+        "Told is the first speed then; the last two columns are those of the first right one."
+    )
+    return Table("told", "Limits told", columns, tuple(rows), note, heads=2)
