@@ -21,7 +21,7 @@ def compare(
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
-    """Compare two evaluations on the same instances.
+    """Compare two evaluations on the same episodes.
 
     Exit code 1 if success, or the score of drives, fell by more than the threshold, or something that was planned
     was not run.

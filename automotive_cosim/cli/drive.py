@@ -36,6 +36,7 @@ def run_drive(
     """Runs, records and tells one drive under the options of ``run``."""
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
+    from automotive_cosim.drives.elsewhere import name_of
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.episode.own_prompt import instructions
     from automotive_cosim.run.drive import DriveSetup
@@ -62,7 +63,7 @@ def run_drive(
         agent=player.name,
         model=player.model,
     )
-    folder = out or stamped_folder(f"{family}-{player.name}-seed{seed}")
+    folder = out or stamped_folder(f"{name_of(family, setup.in_scenario)}-{player.name}-seed{seed}")
     check_folder(folder, force=force)
     recorder, road = Recorder(setup, folder, {"out": str(folder)}), RoadRecorder(folder, setup.about)
     with closing(recorder), closing(road):
@@ -97,7 +98,7 @@ def drives(as_json: AsJson = False) -> None:
 def _tell(console: Console, row: DriveTrialRow, timeline: Json) -> None:
     """The drive's events and acts in chronological order with what became of them, what went wrong and why, and its
     score."""
-    from automotive_cosim.contracts.plain import clock
+    from automotive_cosim.contracts.plain import clock, model_and_options
     from automotive_cosim.drives.faults import became, faults, key_of
     from automotive_cosim.drives.followed import told
 
@@ -126,9 +127,9 @@ def _tell(console: Console, row: DriveTrialRow, timeline: Json) -> None:
     found = row.score
     assert found is not None
     recall = "no events" if found.recall is None else f"{found.met} of {found.events} events met"
-    model = "" if row.model == "none" else f" ({row.model})"
+    model = "" if row.model == "none" else f" ({model_and_options(row.model)[0]})"
     console.print(
-        f"{row.family}, seed {row.seed}, {row.agent}{model}: score {found.value:.0f}; {recall}, "
+        f"{row.name}, seed {row.seed}, {row.agent}{model}: score {found.value:.0f}; {recall}, "
         f"{found.false_alarms_per_h:.1f} false alarms and {found.nuisances_per_h:.1f} nuisances an hour, "
         f"{row.steps} steps in {found.driven_s / 60:.0f} min",
         soft_wrap=True,

@@ -28,7 +28,7 @@ from automotive_cosim.cli.options import (
     print_json,
 )
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.plain import counted, megabytes_in_words
+from automotive_cosim.contracts.plain import counted, megabytes_in_words, model_and_options
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError, UserError, install_hint
 from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
@@ -154,28 +154,26 @@ def evaluate(
 
 
 def _short(found: Results, at_least: float) -> list[str]:
-    """What is below a share, agent by agent: of the planned episodes, or of the score of drives.
-
-    All drives must have run.
+    """What is below a share, agent by agent: of the episodes that were run, or of the score of drives; and what was
+    not run, as everything must have been.
     """
     from automotive_cosim.report.drives import grouped, whole
 
     told = []
     for each in found.contestants:
-        planned = found.planned_of(each)
-        won = sum(row.has_succeeded for row in planned)
-        if won < at_least * len(planned):
-            told.append(
-                f"{each.label}: {won:,} of {counted(len(planned), 'episode')} succeeded, a smaller share than "
-                f"{at_least:g}"
-            )
+        ran = found.of(each)
+        won = sum(row.has_succeeded for row in ran)
+        if won < at_least * len(ran):
+            of = f"{won:,} of {counted(len(ran), 'episode')}"
+            told.append(f"{each.label}: {of} succeeded, a smaller share than {at_least:g}")
     for each, rows in grouped(found.drives).items():
         points = whole(rows).value
         if points < 100 * at_least:
             score = f"{points:.0f}".replace("-", "−")
             told.append(f"{each.label}: score {score}, less than {100 * at_least:g} of 100 points")
-    if found.drives_not_run:
-        told.append(f"{counted(len(found.drives_not_run), 'drive')} not run")
+    for unit, left in (("episode", found.not_run), ("drive", found.drives_not_run)):
+        if left:
+            told.append(f"{counted(len(left), unit)} not run")
     return told
 
 
@@ -203,12 +201,12 @@ def _failures(rows: Sequence[TrialRow]) -> Iterator[str]:
         mine = [row for row in rows if row.agent == agent]
         failed = [row for row in mine if row.agent_error is not None]
         for row in failed[:1]:
-            yield f"agent {agent} failed in {counted(len(failed), 'trial')}, e.g. {row.id}: {row.agent_error}"
+            yield f"agent {agent} failed in {counted(len(failed), 'run')}, e.g. {row.id}: {row.agent_error}"
         lost = [row for row in mine if row.malformed]
         steps = sum(row.malformed or 0 for row in lost)
         for row in lost[:1]:
             yield (
-                f"agent {agent} gave no action in {counted(steps, 'step')} of {counted(len(lost), 'trial')}, e.g. "
+                f"agent {agent} gave no action in {counted(steps, 'step')} of {counted(len(lost), 'run')}, e.g. "
                 f"{row.id}: {row.malformed_why}"
             )
 
@@ -228,9 +226,8 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
 
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
-    table.add_row(
-        "agents", ", ".join(sorted({f"{job.agent} ({job.model})".removesuffix(" (none)") for job in jobs}))
-    )
+    agents = {f"{job.agent} ({model_and_options(job.model)[0]})".removesuffix(" (none)") for job in jobs}
+    table.add_row("agents", ", ".join(sorted(agents)))
     episodes = [job for job in jobs if isinstance(job, EpisodeSetup)]
     if episodes:
         table.add_row("tasks", f"{len({job.task for job in episodes})} (pairs in both halves)")

@@ -21,7 +21,7 @@ def export(
     trial: Annotated[
         Path,
         typer.Argument(
-            help="Folder of `run` with --out, or of one trial in pictures/ of `eval`.",
+            help="Folder of `run` with --out, or of one run in pictures/ of `eval`.",
             show_default=False,
         ),
     ],
@@ -36,7 +36,7 @@ def export(
     ],
     out: Annotated[Path | None, typer.Option(help="Folder for the files.", show_default="TRIAL/exchange")] = None,
 ) -> None:
-    """Write a kept trial in the formats of others: OpenSCENARIO XML, OpenDRIVE, OSI, SSAM, FCD, CSV, Parquet."""
+    """Write a kept run in the formats of others: OpenSCENARIO XML, OpenDRIVE, OSI, SSAM, FCD, CSV, Parquet."""
     from automotive_cosim.exchange.needs import OPENSCENARIO, check_formats
     from automotive_cosim.exchange.openscenario import write_openscenario
     from automotive_cosim.exchange.osi import trace_name, write_osi

@@ -48,6 +48,7 @@ COMMANDS = (
     ("scenarios", "scenarios:app", CONTENTS),
     ("agents", "agents:app", CONTENTS),
     ("show", "show:app", CONTENTS),
+    ("ci", "ci:app", TOOLS),
     ("doctor", "doctor:doctor", TOOLS),
     ("bench", "bench:bench", TOOLS),
     ("keep", "keep:keep", TOOLS),

@@ -17,7 +17,7 @@ def measures(
     record: Annotated[
         Path,
         typer.Argument(
-            help="Folder of `run` or `eval`, of one of its trials in pictures/, or a road.jsonl.gz.",
+            help="Folder of `run` or `eval`, of one of its runs in pictures/, or a road.jsonl.gz.",
             show_default=False,
         ),
     ],
@@ -36,9 +36,9 @@ def measures(
     ] = None,
     **settings: Any,
 ) -> None:
-    """Print the encounters of recorded trials with their surrogate measures of safety, as CSV or Parquet.
+    """Print the encounters of recorded runs with their surrogate measures of safety, as CSV or Parquet.
 
-    Those of an evaluation have a first column with the trial.
+    Those of an evaluation have a first column `trial`, with the id.
     """
     from automotive_cosim.exchange.needs import check_formats
     from automotive_cosim.exchange.trajectories import write_frame

@@ -143,7 +143,7 @@ Most = Annotated[
     LimitSettings | None,
     typer.Option(
         "--most",
-        help="Other limits of a trial, as in steps=40,tokens=20000,seconds=60: actions, waits among them; tokens "
+        help="Other limits of a run, as in steps=40,tokens=20000,seconds=60: actions, waits among them; tokens "
         "to and from the model (2 million; 20 million for a drive); seconds to wait for it in all (1800; 14400). "
         "At one of them an episode is judged as it is, and a drive goes on unwatched; so it is, with `run`, after "
         "wall seconds of real time since the hand-over or the departure.",

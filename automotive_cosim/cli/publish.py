@@ -96,7 +96,7 @@ def regrade(
     folder: Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)],
     as_json: AsJson = False,
 ) -> None:
-    """Judge the stored trials again by the current checks and print what changes; nothing is written."""
+    """Judge the stored runs again by the current checks and print what changes; nothing is written."""
     from automotive_cosim.run.coverage import coverage
     from automotive_cosim.run.regrade import regrade as judged_again
     from automotive_cosim.run.rows import read_trials

@@ -32,7 +32,7 @@ def report(
     ] = None,
     protocol: Annotated[
         str | None,
-        typer.Option(help="Protocol whose rows the trials speak for: euroncap-2026.", show_default=False),
+        typer.Option(help="Protocol whose rows the runs speak for: euroncap-2026.", show_default=False),
     ] = None,
 ) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""
@@ -83,7 +83,7 @@ TrialId = Annotated[
 
 @reads_results
 def attribute(folder: TrialFolder, episode: TrialId = "", as_json: AsJson = False) -> None:
-    """Measure what each act of a stored trial changed, by leaving it out, and add that to its page.
+    """Measure what each act of a stored run changed, by leaving it out, and add that to its page.
 
     Acts that change nothing alone are also left out in pairs. Of a rerouting study, it tells of each decision.
     """
@@ -105,14 +105,15 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
     if as_json:
         print_json({"acts": [asdict(each) | {"effect": each.effect} for each in effects]})
         return
+    from automotive_cosim.run.attribution import sentence
+
+    typer.echo(sentence(effects))
     for each in effects:
         step = f"step {' and '.join(map(str, each.steps))}, " if each.steps else ""
         typer.echo(f"{step}{clock(each.at_s)}  {each.act}")
         if each.came:
             typer.echo(f"    driver: {each.came}")
         typer.echo(f"    effect: {each.effect}")
-    if not effects:
-        typer.echo("the agent commanded nothing: what happened is the do-nothing run")
 
 
 @reads_results
@@ -125,7 +126,7 @@ def replay(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Replay the actions of a stored trial and compare the traces.
+    """Replay the actions of a stored run and compare the traces.
 
     Exit code 1 if the traces differ.
     """

@@ -56,8 +56,8 @@ def search(
 ) -> None:
     """Search a space of situations and conditions for failures of an agent. Rerun the command to resume.
 
-    Points that are spread evenly run in parallel, or on a cluster; what is learnt from them runs here, one by one.
-    After Ctrl-C the page has what was found by then.
+    Combinations that are spread evenly run in parallel, or on a cluster; what is learnt from them runs here, one
+    by one. After Ctrl-C the page has what was found by then.
     """
     from automotive_cosim.cli.console import Console
     from automotive_cosim.formats.writing import write_whole
@@ -80,12 +80,12 @@ def search(
     file, may_use = space_file(order.space), SearchBudget.read(order.budget)
     if how.sampler in ("lhs", "grid") and may_use.points is None:
         raise UserError(
-            f"the sampler {how.sampler} is laid out for a number of points; give one, as in --budget 64,2h"
+            f"the sampler {how.sampler} is laid out for a number of combinations; give one, as in --budget 64,2h"
         )
     check_prices((model,), Budget(usd=may_use.usd))
     if may_use.points is may_use.hours is None and model.startswith(("rules", "replay/")):
         raise UserError(
-            f"{model} costs nothing, so that {order.budget} never ends; give points or hours, as in "
+            f"{model} costs nothing, so that {order.budget} never ends; give combinations or hours, as in "
             f"64,{order.budget}"
         )
     distributions()  # without which the findings cannot be told, after all runs
@@ -138,7 +138,7 @@ def search(
             nonlocal said_s
             if row is not None and time.monotonic() - said_s >= TELL_S:
                 said_s, used = time.monotonic(), clock(run.limit.used_s())
-                console.print(f"{counted(run.ran, 'run')} in {used}; still at the same point", soft_wrap=True)
+                console.print(f"{counted(run.ran, 'run')} in {used}; still at the same combination", soft_wrap=True)
             noted = about | {"budget": laid, "used_s": round(run.limit.used_s(), 1)}
             write_whole(folder / SETTINGS, json.dumps(noted, indent=1))
 
@@ -210,9 +210,9 @@ def too_many(found: Hunt, at_most: int) -> str:
     if any(not each.changed for each in found.minimal):
         return "it fails with everything nominal"
     if not samples:
-        return "nothing was due in any trial, so that nothing is known"
+        return "nothing was due in any run, so that nothing is known"
     return (
-        f"{failed} of {counted(len(samples), 'trial')} in which something was due failed, more than {at_most}"
+        f"{failed} of {counted(len(samples), 'run')} in which something was due failed, more than {at_most}"
         if failed > at_most
         else ""
     )
@@ -245,12 +245,12 @@ def _told_before(
         minutes = counted(round(60 * may_use.hours), "minute")
         yield f"{minutes} at most, with earlier starts: no run begins after that"
     if may_use.points is None:
-        yield f"as many points as the budget allows; results in {folder}"
+        yield f"as many combinations as the budget allows; results in {folder}"
     else:
         known = len(read_trials(folder)) if (folder / "manifest.json").is_file() else 0
         needs = search_forecast(space, plan, max(0, may_use.points - known), workers)
-        yield f"{counted(may_use.points, 'point')} to sample; results in {folder}" + (
-            f", where {counted(known, 'trial')} are" if known else ""
+        yield f"{counted(may_use.points, 'combination')} to try; results in {folder}" + (
+            f", where {counted(known, 'run')} are" if known else ""
         )
         yield from forecast_in_words(needs, workers)
         if failures:

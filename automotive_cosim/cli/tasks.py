@@ -131,4 +131,4 @@ def _instances(tasks: list[Task]) -> str:
     """The number of different instances, in words."""
     from automotive_cosim.tasking.instance import instances
 
-    return f"{sum(map(instances, tasks)):,} instances by words, parameters and scenario"
+    return f"{sum(map(instances, tasks)):,} episodes by words, parameters and scenario"

@@ -77,8 +77,8 @@ def validate(tasks_from: TasksFrom = None, as_json: AsJson = False, **settings: 
             typer.echo(line)
         failed = sum(bool(entry["failed"]) for entry in result["gates"].values())
         typer.echo(
-            f"{counted(len(task_ids), 'task')}, {counted(len(told.seeds), 'seed')}: "
-            f"{counted(failed, 'gate')} failed, {counted(len(result['errors']), 'error')}"
+            f"{counted(len(task_ids), 'task')}, {counted(len(told.seeds), 'seed')}: {failed} of "
+            f"{counted(len(result['gates']), 'gate')} failed, {counted(len(result['errors']), 'error')}"
         )
     if changed or any(entry["failed"] for entry in result["gates"].values()):
         raise typer.Exit(FAILED)

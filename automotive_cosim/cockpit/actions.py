@@ -474,12 +474,13 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
     return takes.effect(cockpit, action)
 
 
-def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
+def action_in_words(action: Action | None, elements: Sequence[Element], waited_s: float | None = None) -> str:
     """Describes an action, as a sentence without a subject.
 
     Args:
         action: None if the agent raised, or its answer could not be read.
         elements: the list the agent saw when it acted.
+        waited_s: how long a wait lasted, if something may have ended it.
     """
     if action is None:
         return "gives no action"
@@ -491,7 +492,7 @@ def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
     told = {name: _plain(value) if isinstance(value, StrEnum) else value for name, value in _each(action)} | {
         "on": _target_in_words(action, elements),
         "far": "" if action.distance_px is None else f" by {action.distance_px} px",
-        "for_s": action.seconds or 1,
+        "for_s": action.seconds or 1 if waited_s is None else round(waited_s),
         "because": f" ({_plain(action.reason)})" if because else "",
         "switched": "on" if action.on else "off",
         "to": f" to {action.destination}" if action.destination else "",

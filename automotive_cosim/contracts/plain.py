@@ -41,6 +41,13 @@ def counted(number: int, noun: str, plural: str = "") -> str:
     return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
 
 
+def model_and_options(spec: str) -> tuple[str, list[str]]:
+    """The name of a model as people read it, and its options without the prices, which change nothing that it does:
+    ``provider/model?temperature=0.5&usd_per_million_in=2`` is ``provider/model`` and ``temperature=0.5``."""
+    name, _, query = spec.partition("?")
+    return name, [each for each in query.split("&") if each and not each.startswith("usd_per_")]
+
+
 def clock(seconds: float) -> str:
     """A span of time as ``3:05`` or ``1:03:05``."""
     minutes, rest = divmod(int(seconds), 60)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 
+from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Trip, open_scenario
@@ -35,6 +37,14 @@ def elsewhere(script: DriveScript, place: str) -> DriveScript:
     turned = script.seed % len(trips)
     names = tuple(trip.name for trip in trips)
     return replace(script, scenario=place, trips=names[turned:] + names[:turned], origin=None)
+
+
+def name_of(family: str, place: str) -> str:
+    """What people call a drive of a family at a place: the family is named for its own place and its month."""
+    known = FAMILIES.get(family)
+    if not place or known is None or place == known.scenario:
+        return family
+    return f"{Path(place).name.partition('.')[0]}_{family.rpartition('_')[2]}"
 
 
 def _in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:

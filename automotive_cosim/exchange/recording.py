@@ -59,7 +59,7 @@ def read_recording(folder: Path) -> Recording:
     path = road_in(folder)
     road = read_record(path)
     if not road.seconds:
-        raise UserError(f"{path} has no second of a drive; record the trial again")
+        raise UserError(f"{path} has no second of a drive; record the run again")
     try:
         return Recording(folder, road, tuple(_acts(folder)))
     except (LookupError, TypeError, ValueError) as error:

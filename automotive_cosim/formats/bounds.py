@@ -127,7 +127,7 @@ READERS = (
         "a table of counts as text", "studies.calibration.sheets", f"{_mb(TABLE_BYTES)}, {CELLS:,} cells"
     ),
     _BoundedReader("a table that a study packed", "formats.csvs", f"{_PACKED}; {CELLS:,} cells"),
-    _BoundedReader("a picture of a trial", "report.page", f"{PIXELS:,} pixels"),
+    _BoundedReader("a picture of a run", "report.page", f"{PIXELS:,} pixels"),
     _BoundedReader("a bundle", "publish.archive", f"not compressed, at most its own size; {_process(BUNDLE)}"),
 )
 """GeoJSON, Parquet and OSI are written and never read."""

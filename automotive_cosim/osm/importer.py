@@ -269,7 +269,7 @@ class _Search:
             if not rest_flows:
                 factor = HALTED_SHARE_AIM / max(run.halted_share_max, HALTED_SHARE_AIM)
                 scale = round(max(SCALE_MIN, scale * min(max(factor, SCALE_STEPS[0]), SCALE_STEPS[1])), 3)
-        raise AssertionError("the last trial returns or raises")
+        raise AssertionError("the last try returns or raises")
 
     def _left_out(self, run: Stability) -> bool:
         """Whether trips that stood for good where the rest flowed could be left out."""

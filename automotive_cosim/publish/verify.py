@@ -155,7 +155,7 @@ def _read(folder: Path, bundle: Path | None) -> _Read:
     jobs = {job.id: job for job in make_plan(manifest["plan"]).jobs()}
     problems += _manifest_problems(manifest, jobs)
     problems += _line_problems(folder, rows, strict=contents is not None)
-    problems += [Problem(ROWS, name, "is not a trial of the plan") for name in rows if name not in jobs]
+    problems += [Problem(ROWS, name, "is not in the plan") for name in rows if name not in jobs]
     problems += _file_problems(folder, rows)
     if contents is not None:
         problems += [] if "episodes" in manifest else [Problem(MANIFEST, "episodes", "is missing")]

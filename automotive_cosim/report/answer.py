@@ -24,7 +24,7 @@ def answer(results: Results) -> str:
         told.append(_ranking(results.shared()))
     if results.drives:
         ranked = [row for row in results.drives if row.agent not in NOT_RANKED]
-        told += drives.standings(ranked or results.drives)[:1]
+        told += [f"{line} ({drives.SCALE})" for line in drives.standings(ranked or results.drives)[:1]]
     trials = (*results.rows, *results.drives)
     errors = sum(row.error is not None for row in trials)
     ended = (
@@ -99,11 +99,15 @@ def _key(row: EpisodeRow, unit: str) -> Hashable:
 def versus(first: str, second: str, found: Comparison, unit: str) -> str:
     """Two contestants, and by how many percentage points the first is better, if that can be told, on how many
     units."""
-    difference = counted(round(100 * found.difference), "point").replace("-", "−")
+    difference = counted(round(100 * found.difference), "percentage point").replace("-", "−")
     if found.interval is None:
         ahead, behind = (first, second) if found.difference > 0 else (second, first)
         lead = f"{ahead} is {difference.removeprefix('−')} ahead of {behind}"
-        lead = lead if found.difference else f"{first} and {second} are level"
+        lead = (
+            lead
+            if found.difference
+            else f"{first} and {second} are level, {found.both + found.only_first} won each,"
+        )
         on = f"{counted(found.count, unit)} of {counted(found.clusters, 'task')}"
         return f"{lead} on {on}, too few to tell agents apart ({LEAST_CLUSTERS} tasks are needed)"
     points = f"{difference} ({_signed(found.interval.low)} to {_signed(found.interval.high)})"

@@ -42,11 +42,11 @@ def consistency(results: Results) -> Table:
                         *(Cell(_share(repeats, any_passes, k), ids) for k in ks[1:]),
                     )
                 )
-    columns = ("Contestant", "Dimension", "Instances", *(f"pass^{k}" for k in ks), *(f"pass@{k}" for k in ks[1:]))
+    columns = ("Contestant", "Dimension", "Episodes", *(f"pass^{k}" for k in ks), *(f"pass@{k}" for k in ks[1:]))
     note = (
-        "The probability that all of k runs of an instance succeed (pass^k), and that one of them does (pass@k), "
+        "The probability that all of k runs of an episode succeed (pass^k), and that one of them does (pass@k), "
         "in per cent with a 95 % bootstrap interval over tasks, or Wilson's if all tasks agree. Each seed is an "
-        "instance of its own."
+        "episode of its own."
     )
     return Table("repeats", "Reliability over repeats", columns, tuple(rows), note, heads=2)
 
@@ -64,7 +64,7 @@ def varied(results: Results) -> Table:
                 rows.append(
                     (each.label, Cell(instance, ids), f"{len(won)} of {len(repeats)}", step, winning, losing)
                 )
-    columns = ("Contestant", "Instance", "Succeeded", "Step", "A run that succeeded", "A run that did not")
+    columns = ("Contestant", "Episode", "Succeeded", "Step", "A run that succeeded", "A run that did not")
     note = "The first step in which the actions of the first such run of each kind differ."
     return Table("varied", "Where repeats part", columns, tuple(rows), note, heads=2)
 

@@ -80,6 +80,7 @@ def _left_alone(rows: Sequence[DriveTrialRow]) -> str:
     return f"; nobody watched {counted(len(from_s), 'drive')} to the end, one from {clock(min(from_s))} on"
 
 
+SCALE = "a score of 0 is doing nothing, 100 the rule-perfect watcher"
 DIVERGE = (
     "Watchers meet different events on the same drive: after the first act, driver and traffic go another way."
 )
@@ -252,9 +253,7 @@ def tables(rows: Sequence[DriveTrialRow], folder: Path) -> list[Table]:
             _watchers(groups),
             _faults(groups),
             _acts(groups, folder),
-            act_effects(
-                folder, {row.id: f"{contestant(row).label}, {row.family}, seed {row.seed}" for row in rows}
-            ),
+            act_effects(folder, {row.id: f"{contestant(row).label}, {row.name}, seed {row.seed}" for row in rows}),
             _kinds(groups),
             _families(groups),
             _effects(groups),
@@ -290,7 +289,7 @@ def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         "Watchers",
         ("Watcher", "Drives", "Hours", *(name for name, _, _ in FIGURES)),
         lines,
-        "Score: 0 is doing nothing, 100 is the rule-perfect watcher; a nuisance costs as much as a miss of weight "
+        f"{SCALE[2:].capitalize()}; a nuisance costs as much as a miss of weight "
         f"1, a look-alike taken for an event twice its weight. {DIVERGE} Known to act: median from when an event "
         "could be known to the act that met it; due to act: from when it was due, of events met after that, where "
         f"up to {FULL_S:g} s cost nothing. {_intervals_told(groups)}",
@@ -322,7 +321,7 @@ def _effects(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
 def _faults(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
     """What every watcher missed, met too late, or did needlessly."""
     lines = tuple(
-        (each.label, f"{row.family}, seed {row.seed}", clock(fault.time_s), fault.what, fault.about, fault.why)
+        (each.label, f"{row.name}, seed {row.seed}", clock(fault.time_s), fault.what, fault.about, fault.why)
         for each, mine in groups.items()
         for row in mine
         for fault in faults(row.events, row.acts)
@@ -350,7 +349,7 @@ def _acts(groups: dict[Contestant, list[DriveTrialRow]], folder: Path) -> Table:
                 drove = f"{came.before_kmh:.0f}", f"{came.after_kmh:.0f}", f"{came.over_s:.0f}"
                 lines.append(
                     (
-                        *(each.label, f"{row.family}, seed {row.seed}", clock(act.time_s), act.words),
+                        *(each.label, f"{row.name}, seed {row.seed}", clock(act.time_s), act.words),
                         *(str(act.worth), came.answer or "none asked", when, came.did, *drove),
                     )
                 )
@@ -500,7 +499,7 @@ def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, Chart]:
         found = None if row.score is None else timeline_of(folder, row.id)
         if found is None:
             continue
-        plot = timeline_chart(row, found, f"{row.family}, seed {row.seed}: {contestant(row).label}")
+        plot = timeline_chart(row, found, f"{row.name}, seed {row.seed}: {contestant(row).label}")
         write_whole(make_folder(folder, "plots") / f"{row.id}.svg", plot.svg)
         if len(plots) < SHOWN:
             plots[row.id] = plot

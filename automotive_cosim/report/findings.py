@@ -81,7 +81,7 @@ def act_effects(folder: Path, trials: Mapping[str, str]) -> Table:
         for trial, name in trials.items()
         for each in read_effects(path_of(folder, trial))
     )
-    columns = ("Trial", "Step", "When", "Act", "Effect", "Draws")
+    columns = ("Id", "Step", "When", "Act", "Effect", "Draws")
     note = (
         "Measured by `automotive-cosim attribute`: each act was left out of a fork of the same traffic, the later "
         "ones given as recorded; two together where neither changed anything alone. Differences are with the act "

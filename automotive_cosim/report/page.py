@@ -41,11 +41,11 @@ def write_page(folder: Path) -> Path:
         folder: of a trial (``formats.layout``).
 
     Raises:
-        UserError: it cannot be read, or its trial has not ended.
+        UserError: it cannot be read, or the run has not ended.
     """
     told = read_trial(folder)
     if not told.get("result"):
-        raise UserError(f"{folder} has no result: its trial has not ended")
+        raise UserError(f"{folder} has no result: the run has not ended")
     row, result = from_json(EpisodeRow, told["row"]), from_json(EpisodeResult, told["result"])
     manifest = told["manifest"]
     film = folder / FILM
@@ -104,7 +104,7 @@ def open_picture(path: Path) -> Image.Image:
     try:
         picture = Image.open(path if path.is_file() else "")
     except (OSError, Image.DecompressionBombError) as error:
-        raise UserError(f"{path} is no picture that can be read; record the trial again") from error
+        raise UserError(f"{path} is no picture that can be read; record the run again") from error
     if picture.width * picture.height > bounds.PIXELS:
         picture.close()
         raise UserError(f"{path} has over {bounds.PIXELS:,} pixels; a screen has not")

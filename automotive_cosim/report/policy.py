@@ -41,6 +41,6 @@ def house_rules(groups: Mapping[Contestant, Sequence[TrialRow]], name: str = "po
     columns = ("Contestant", "Rules kept", "Kept and solved", "Breaches", "Broken most often")
     note = (
         "House rules are checked by code, whether or not the agent was told them (`--policy house`), and have no "
-        "part in success. Judged trials alone."
+        "part in success. Judged runs alone."
     )
     return Table(name, "House rules", columns, tuple(rows), note)

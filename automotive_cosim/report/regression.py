@@ -254,7 +254,7 @@ def _name(row: TrialRow, unit: str) -> str:
         where = "" if unit == "pairs" else f"{f', {row.half} half' if row.pair else ''}, {row.scenario}"
         return f"{row.task}{where}, seed {row.seed}{repeat}"
     assert isinstance(row, DriveTrialRow)
-    words = (row.family, row.scenario, row.settings.words, f"seed {row.seed}")
+    words = (row.name, row.scenario, row.settings.words, f"seed {row.seed}")
     return ", ".join(filter(None, words)) + repeat
 
 
@@ -295,7 +295,7 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
             "Not judged now",
         ),
         tuple(rows),
-        "On the instances that were judged before, in percentage points or points of score, with 95 % intervals "
+        "On the episodes that were judged before, in percentage points or points of score, with 95 % intervals "
         f"over tasks or drives, from {LEAST_CLUSTERS} of them on. Drives are compared by the score of all of them "
         "together, and a drive is lost if "
         f"its score fell. Worse: success or score fell by more than {100 * allowed:g} points, or something is no "
@@ -379,7 +379,7 @@ def _before_and_after(each: SuccessChange) -> str:
         before, after = (
             (each.found.both + only) / each.found.count for only in (each.found.only_second, each.found.only_first)
         )
-        told = f"{before:.0%} before, {after:.0%} after"
+        told = f"success {before:.0%} before, {after:.0%} after"
     told += f", of {counted(common, unit)}"
     if lost := each.count("error"):
         told += f", of which {lost:,} {'is' if lost == 1 else 'are'} no longer judged"
@@ -463,6 +463,6 @@ def junit(found: Sequence[SuccessChange]) -> str:
             if verdict:
                 told = ElementTree.SubElement(entry, verdict, message=case.why or "not solved now")
                 if case.after is not None and case.after.has_run:
-                    told.text = f"trial {case.after.id}: `automotive-cosim serve` with its folder shows each step"
+                    told.text = f"run {case.after.id}: `automotive-cosim serve` with its folder shows each step"
     ElementTree.indent(root)
     return markup(ElementTree.tostring(root, encoding="unicode", xml_declaration=True)) + "\n"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface, See
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import counted, model_and_options
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.run.coverage import Coverage, coverage
@@ -40,20 +40,27 @@ class Contestant:
 
     @property
     def base_model(self) -> str:
-        """The model, with ``rules`` labelled as a stand-in."""
-        return {"rules": STAND_IN, "none": "none"}.get(self.model, self.model)
+        """The model without its options, with ``rules`` labelled as a stand-in."""
+        name, _ = model_and_options(self.model)
+        return {"rules": STAND_IN}.get(name, name)
 
     @property
     def method(self) -> str:
-        """The agent, with references and negative controls labelled."""
+        """The agent, with references and negative controls labelled, and what its model is told."""
+        _, options = model_and_options(self.model)
+        return ", ".join((self._agent, *options))
+
+    @property
+    def _agent(self) -> str:
         about = NOT_RANKED.get(self.agent)
         return f"{self.agent} ({about})" if about else self.agent
 
     @property
     def label(self) -> str:
         """Agent, model, conditions and speed on one short line."""
-        model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
-        return ", ".join(part for part in (self.method, model, *self.conditions.labels) if part)
+        name, options = model_and_options(self.model)
+        model = {"rules": "rules stand-in", "none": ""}.get(name, name)
+        return ", ".join(part for part in (self._agent, model, *options, *self.conditions.labels) if part)
 
     def under(self, name: str, value: Any) -> Contestant:
         """The same with another value of a condition."""
@@ -214,8 +221,9 @@ def pair_instance(row: EpisodeRow) -> tuple[object, ...]:
 def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[EpisodeRow]]]:
     """Each pair as one episode-like row, which succeeds if both halves do, with its two halves.
 
-    If one half ended in an error, the pair is an error, unless the other half failed; if one half has not been run,
-    the pair has not been run, with the same exception.
+    If one half has not been run, the pair has not been run: those whose first half failed would else be lost, and
+    those whose first half succeeded not counted. If one ended in an error, the pair is an error, unless the other
+    half failed.
     """
     found: dict[str, list[EpisodeRow]] = {}
     for row in rows:
@@ -225,7 +233,9 @@ def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[Episode
     for halves in found.values():
         if len(halves) == 2:
             outcomes = [half.success for half in halves]
-            success = False if False in outcomes else None if None in outcomes else True
+            waiting = [half for half in halves if not half.has_run]
+            success = None if waiting else False if False in outcomes else None if None in outcomes else True
             shown = max(halves, key=lambda half: half.error is not None) if success is None else halves[0]
+            shown = waiting[0] if waiting else shown
             joined.append((replace(shown, success=success), halves))
     return joined

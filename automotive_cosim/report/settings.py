@@ -18,7 +18,7 @@ class CompareSettings:
     threshold: Annotated[float, Ge(0), Le(100), Option(form="POINTS")] = 0.0
     """By how many percentage points success, or points the score of drives, may fall."""
     junit: Path | None = None
-    """File for a JUnit report with one case per instance."""
+    """File for a JUnit report with one case per episode."""
     markdown: Path | None = None
     """File for a summary in Markdown."""
     mixed_versions: bool = False

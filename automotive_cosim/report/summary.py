@@ -18,9 +18,7 @@ from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.task import Dimension, Module, Subset
 from automotive_cosim.tasking.verdict import PARTS
 
-PAPER = (
-    "Automotive-ENV, arXiv 2509.21143, table 3: success rates in per cent, without intervals or numbers of trials"
-)
+PAPER = "Automotive-ENV, arXiv 2509.21143, table 3: success rates in per cent, without intervals or numbers of runs"
 PAPER_COLUMNS = (
     "Base model",
     "Method",
@@ -347,13 +345,13 @@ def comparisons(results: Results) -> Table:
                     f"{found.only_first} : {found.only_second}",
                 )
             )
-    columns = ("First", "Second", "Instances", "Difference", "Won by only one")
+    columns = ("First", "Second", "Episodes", "Difference", "Won by only one")
     note = (
         "Success of the first minus that of the second on the same task, half, scenario, seed and repeat, with a "
         f"95 % bootstrap interval over tasks, from {LEAST_CLUSTERS} tasks on, or Newcombe's if all tasks agree; "
         "not corrected for the number of comparisons."
     )
-    return Table("comparisons", "Compared on the same instances", columns, tuple(rows), note, heads=2)
+    return Table("comparisons", "Compared on the same episodes", columns, tuple(rows), note, heads=2)
 
 
 def _compared(ones: Mapping[Hashable, EpisodeRow], others: Mapping[Hashable, EpisodeRow]) -> Comparison | None:
@@ -410,7 +408,7 @@ def replaced(results: Results) -> Table:
         if row.traffic_seed not in (None, row.seed)
     )
     note = (
-        "Their situation did not occur in the seed's own traffic, for any agent; the instance is still the seed's."
+        "Their situation did not occur in the seed's own traffic, for any agent; the episode is still the seed's."
     )
     return Table("replaced", "Spare traffic", ("Episode", "Seed", "Traffic"), rows, note)
 

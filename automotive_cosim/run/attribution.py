@@ -10,7 +10,7 @@ from itertools import combinations
 from pathlib import Path
 
 from automotive_cosim.contracts import KMH_PER_MPS
-from automotive_cosim.contracts.plain import clock
+from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.drives.driver import driver_events
 from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.followed import followed
@@ -91,6 +91,21 @@ def read_effects(path: Path) -> list[ActEffect]:
         raise UserError(f"{path} holds no effects of acts; `automotive-cosim attribute` measures them") from error
 
 
+def sentence(effects: Sequence[ActEffect]) -> str:
+    """What was found, in a sentence: of the acts, those that changed the verdict or the road."""
+    acts, failed = [each for each in effects if each.steps], culprit(effects)
+    beside = f" What made it fail: {failed}." if failed else ""
+    if not acts:
+        return f"The agent commanded nothing: what happened is the do-nothing run.{beside}"
+    changed = [each for each in acts if not each.is_neutral]
+    steps = ", ".join(" and ".join(map(str, each.steps)) for each in changed)
+    count = len({step for each in acts for step in each.steps})
+    of = f"of {counted(count, 'act')}, each left out of the same traffic"
+    if not changed:
+        return f"None {of}, changed the verdict or the road.{beside}"
+    return f"{len(changed)} {of}, changed the verdict or the road: step {steps}.{beside}"
+
+
 def culprit(effects: Sequence[ActEffect], kinds: Collection[str] = ()) -> str:
     """The act, or the missing act, that made a trial fail, in words; empty if none is known.
 
@@ -155,7 +170,7 @@ def without(forks: Forks, steps: Collection[int], redraws: int = REDRAWS) -> Act
     """
     last = forks.session.steps[-1].number
     if not steps or not all(0 < step <= last for step in steps):
-        raise UserError(f"there is no step {', '.join(map(str, steps))}; the trial's steps are 1 to {last}")
+        raise UserError(f"there is no step {', '.join(map(str, steps))}; the run's steps are 1 to {last}")
     left = [act for act in forks.acts if act.step in steps]
     if not left:
         return ActEffect(tuple(steps), 0.0, "commands nothing")

@@ -27,7 +27,7 @@ class Coverage:
     shared_instances: int | None = None
     """Their instances; None if nothing is still to be run."""
     unit: str = "episode"
-    """What is counted: ``episode``, ``drive``, or ``trial`` for both."""
+    """What is counted: ``episode``, ``drive``, or ``run`` for both."""
     problem: str = ""
     """Why it is not known what was planned; then ``not_run`` is empty."""
     nothing_due: int = 0
@@ -93,7 +93,7 @@ def unit_of(plan: Json) -> str:
     tasks = bool(plan.get("tasks")) or any(each.get("task") for each in single)
     if not drives:
         return "episode"
-    return "trial" if tasks else "drive"
+    return "run" if tasks else "drive"
 
 
 def _drift(manifest: Json, rows: Mapping[str, TrialRow], jobs: Mapping[str, TrialSetup]) -> str:

@@ -10,6 +10,7 @@ from automotive_cosim.agents import Agent
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Order
+from automotive_cosim.drives.elsewhere import name_of
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, EventKind
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.judge import ORDER, JudgedAct, JudgedEvent, facts_of, judge, known_to
@@ -43,7 +44,8 @@ class DriveSetup(DriveSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVa
     @property
     def about(self) -> Json:
         names = ("agent", "model", "seed")
-        return {"task": self.family, "scenario": self.in_scenario} | {name: getattr(self, name) for name in names}
+        told = {"task": name_of(self.family, self.in_scenario), "scenario": self.in_scenario}
+        return told | {name: getattr(self, name) for name in names}
 
     @property
     def split(self) -> Split:

@@ -6,6 +6,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Annotated
 
+from automotive_cosim.drives.elsewhere import name_of
 from automotive_cosim.drives.harm import Harm
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.drives.score import Score
@@ -50,6 +51,11 @@ class DriveTrialRow(TrialRow):
     @property
     def subject(self) -> str:
         return self.family
+
+    @property
+    def name(self) -> str:
+        """What people call it: the family, or its month on other roads than its own, ``heidelberg_january``."""
+        return name_of(self.family, self.scenario)
 
     @property
     def instance(self) -> tuple[Hashable, ...]:

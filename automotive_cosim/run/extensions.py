@@ -29,6 +29,8 @@ class ResultsKind:
 
     page: str
     """Of the folder; writes the report into it and returns ``report.html``."""
+    unit: str
+    """What one of its rows is about: ``drive`` or ``seed``."""
     attributed: str = ""
     """Of the folder and the beginning of an item's id; what the acts in it changed."""
     served: Mapping[str, str] = field(default_factory=dict)
@@ -51,7 +53,7 @@ class ResultsKind:
             UserError: this kind has no acts, or no such item, or cannot be read.
         """
         if not self.attributed:
-            raise UserError(f"{folder} has no acts whose effect could be measured; give a folder with trials")
+            raise UserError(f"{folder} has no acts whose effect could be measured; give a folder with runs")
         found: list[ActEffect] = resolve_name(self.attributed)(folder, item)
         return found
 

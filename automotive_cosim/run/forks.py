@@ -102,7 +102,7 @@ def forked(trial: Recorded, simulations: Simulations) -> Iterator[Forks]:
         if wrong := next((step for step in again if step.differs), None):
             raise InfrastructureError(
                 f"step {wrong.number} differs from the record in {', '.join(wrong.differs)}; nothing can be said "
-                "of the acts of a trial that does not repeat"
+                "of the acts of a run that does not repeat"
             )
         yield forks
 

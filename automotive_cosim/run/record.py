@@ -117,7 +117,7 @@ class Recorder(TrialObserver):
         self._arguments = arguments
         self._whole = whole
         self._lines: FileIO | None = None
-        self._begun_s = 0.0
+        self._begun_s = self._last_s = 0.0
         self._pictured: tuple[int, npt.NDArray[np.uint8]] | None = None
         """The last picture, and the number of its step."""
         self._started = datetime.now().astimezone()
@@ -191,12 +191,14 @@ class Recorder(TrialObserver):
             camera = shot.session.world.view() if seen.camera is None else seen.camera
             with drafted(road_view(self.folder, step.number)) as file:
                 Image.fromarray(camera).save(file, "JPEG", quality=VIEW_QUALITY)
-        told, begins = step.as_json(), "hand-over"
+        told, begins, waited_s = step.as_json(), "hand-over", None
         if shot.session.observation.on_watch:
             told["context"], begins = shot.session.observation.context or "", "departure"  # as the agent was told
+            waited_s = step.moment.time_s - self._last_s  # until something changed
+        self._last_s = step.moment.time_s
         line = told | {
             "at_s": round(step.moment.time_s - self._begun_s, 2),
-            "words": action_in_words(step.action, shot.seen) if step.number else begins,
+            "words": action_in_words(step.action, shot.seen, waited_s) if step.number else begins,
             "target": target(step.action.index if step.action else None, shot.seen),
             "speed_kmh": round(step.moment.driving.speed_mps * KMH_PER_MPS, 1),
             "picture": self._pictured[0],

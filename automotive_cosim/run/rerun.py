@@ -134,7 +134,7 @@ def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
 
 def _single(folder: Path, trial: str) -> Recorded:
     if trial:
-        raise UserError(f"{folder} holds a single trial; omit {trial!r}")
+        raise UserError(f"{folder} holds a single run; omit {trial!r}")
     told, stored = read_trial(folder), read_steps(folder)
     job, row = _job(folder, told), (told.get("result") or {}) | (told.get("row") or {})
     channels = frozenset(map(Channel, row["channels"])) if "channels" in row else _channels(job)
@@ -144,7 +144,7 @@ def _single(folder: Path, trial: str) -> Recorded:
 def _job(folder: Path, told: Json) -> TrialSetup:
     values = (told.get("manifest") or {}).get("setup")
     if values is None:
-        raise UserError(f"{folder} does not say what was run; record the trial again")
+        raise UserError(f"{folder} does not say what was run; record the run again")
     where = str(folder / TRIAL)
     if "family" not in values:
         return read_setup(values, where)

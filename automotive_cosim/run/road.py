@@ -170,7 +170,7 @@ def road_in(folder: Path) -> Path:
         return found[""]
     trials = [path.parent for path in found.values()]
     more = f", and {len(trials) - 3} more" if len(trials) > 3 else ""
-    raise UserError(f"{folder} is an evaluation; give one of its trials: {', '.join(map(str, trials[:3]))}{more}")
+    raise UserError(f"{folder} is an evaluation; give one of its runs: {', '.join(map(str, trials[:3]))}{more}")
 
 
 def roads_in(folder: Path) -> dict[str, Path]:

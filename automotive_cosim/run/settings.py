@@ -30,7 +30,7 @@ class EvaluationSettings(ConditionLists):
     """Models for the agents that use one."""
     tasks: Annotated[tuple[str, ...], Option(default="all")] = ()
     """Ids, patterns such as `hvac_*`, tags, modules, dimensions, subsets, abilities, `core`, `general`, `safety` or
-    `all`; none beside drives and trials unless given."""
+    `all`; none beside drives and `[[trials]]` unless given."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
     """The suite they are chosen from: `standard`, `hard`, `limits`, `clarify`, `speed` or `all`; or `live`, the
     pairs of all suites in which road or people do not wait, by `--clock model` unless it says otherwise. An id
@@ -48,8 +48,8 @@ class EvaluationSettings(ConditionLists):
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each task and drive, for models that do not answer the same twice."""
     rephrase: bool = False
-    """Say each repeat of a task in another phrasing, with other people, places and music in the car; the rest of
-    the instance stays."""
+    """Say each repeat of a task in another phrasing, with other people, places and music in the car; all else
+    stays."""
     held_out: bool = False
     """Use only each task's held-out phrasing, which `rules` is not built from; otherwise any phrasing is drawn."""
     split: Annotated[str, OneOf(SPLITS, "split")] = BOTH

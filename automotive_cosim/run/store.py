@@ -360,7 +360,7 @@ def _unchanged(before: Mapping[str, str], now: Mapping[str, str], folder: Path) 
     changed = sorted(what for what in before if before[what] != now.get(what, before[what]))
     if changed:
         raise UserError(
-            f"{', '.join(changed)} {'has' if len(changed) == 1 else 'have'} changed since the trials in {folder} "
+            f"{', '.join(changed)} {'has' if len(changed) == 1 else 'have'} changed since the runs in {folder} "
             "were run. Give --out another folder, or delete that one"
         )
 

@@ -42,17 +42,17 @@ def read_trial(folder: Path) -> Json:
     if not path.is_file() and (found := next((name for name in FORMER if (folder / name).is_file()), None)):
         raise UserError(
             f"{folder} has {found} in place of {TRIAL}: version 0.2 or an earlier one recorded it; read it with "
-            "that version, or record the trial again"
+            "that version, or record the run again"
         )
     try:
         told = read_json(path) if path.is_file() else None
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
-        raise UserError(f"cannot read the trial in {folder}: {error}") from error
+        raise UserError(f"cannot read the run in {folder}: {error}") from error
     if told is None and (trace := trace_of(folder)):
         told = {"result": read_trace(trace.parent.parent, folder.name)[-1].get("result")}
     told = {} if told is None else told
     if not isinstance(told, dict) or not all(isinstance(part, dict | None) for part in told.values()):
-        raise UserError(f"{path} is not a record of a trial")
+        raise UserError(f"{path} is not a record of a run")
     return told
 
 

@@ -46,7 +46,7 @@ class SearchBudget:
             if name in given:
                 raise UserError(f"the budget {text!r} has {name} twice; give {EXAMPLES}")
             if not 0 < value <= MOST_POINTS or (name == "points" and value != int(value)):
-                raise UserError(f"{part.strip()!r} is no budget: more than 0, points whole; give {EXAMPLES}")
+                raise UserError(f"{part.strip()!r} is no budget: more than 0, combinations whole; give {EXAMPLES}")
             given[name] = value
         points = given.get("points")
         return cls(None if points is None else int(points), given.get("hours"), given.get("usd"))
@@ -63,7 +63,11 @@ def progress_in_words(budget: SearchBudget, points: int, used_s: float, each_s: 
         used_s: wall time so far, with earlier starts.
         each_s: wall time of a run; 0 while unknown.
     """
-    told = [counted(points, "point") if budget.points is None else f"{points} of {counted(budget.points, 'point')}"]
+    told = [
+        counted(points, "combination")
+        if budget.points is None
+        else f"{points} of {counted(budget.points, 'combination')}"
+    ]
     left_s = []
     if budget.points is not None and each_s:
         left_s.append(each_s * (budget.points - points))
@@ -72,7 +76,7 @@ def progress_in_words(budget: SearchBudget, points: int, used_s: float, each_s: 
         told.append(f"{min(minutes, used_s / 60):.0f} of {counted(round(minutes), 'minute')}")
         left_s.append(60 * minutes - used_s)
     if left_s and min(left_s) >= 60:
-        what = " for the points" if budget.hours is None else " at most"
+        what = " for the combinations" if budget.hours is None else " at most"
         told.append(f"about {counted(round(min(left_s) / 60), 'minute')} left{what}")
     return ", ".join(told)
 

@@ -182,7 +182,7 @@ class DueScreen:
         changed = ", ".join(said(name, value) for name, value in there[0].items() if value != nominal[name])
         if changed:
             self.space = nominal_at(self.space, there[0])
-            yield f"the nominal point has {changed}: as written, nothing is due there"
+            yield f"the nominal combination has {changed}: as written, nothing is due there"
 
     def _near(self, point: SearchPoint) -> list[SearchPoint]:
         """The point and those beside it, each once."""

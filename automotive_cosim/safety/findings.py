@@ -137,13 +137,13 @@ def _failures(found: Hunt) -> Table:
             "Act, or missing act",
             "Beside it",
             "A careful watcher",
-            "Samples it explains",
+            "Combinations it explains",
         ),
         tuple(lines),
         f"Each failed {REPEATS} times of {REPEATS}, and what is beside it did not. Factors that "
         "are not named are nominal; numbers are bisected. "
         "The careful watcher is the reference: rule-perfect on drives, oracle on tasks. failures/NN.toml replays "
-        "the failure and what is beside it, the nearest point that does not fail: automotive-cosim eval --plan.",
+        "the failure and what is beside it, the nearest that does not fail: automotive-cosim eval --plan.",
         heads=6,
     )
 
@@ -160,11 +160,11 @@ def _unseen(found: Hunt) -> Table:
         "What the search leaves unknown",
         ("Figure", "Value"),
         (
-            ("Points sampled in which something was due", str(len(samples))),
-            ("Points sampled in which nothing was due", str(len(nothing_due(found.samples)))),
-            ("Points passed over, as nothing came due without an agent", str(found.passed_over)),
+            ("Combinations tried in which something was due", str(len(samples))),
+            ("Combinations tried in which nothing was due", str(len(nothing_due(found.samples)))),
+            ("Combinations passed over, as nothing came due without an agent", str(found.passed_over)),
             ("Runs in total, with repeats and reductions", str(len(found.tried))),
-            ("Points that represent the whole space, something due", str(bound.even)),
+            ("Combinations that represent the whole space, something due", str(bound.even)),
             ("Failures among them", str(bound.failed)),
             (f"Failure rate in the space at most ({CONFIDENCE_WORDS})", share(bound.upper)),
             ("Failures among them that no minimal failure explains", str(bound.unexplained)),
@@ -179,8 +179,8 @@ def _unseen(found: Hunt) -> Table:
             ),
             *([("Minimal failures that a careful watcher prevents", f"{averted} of {tried}")] if tried else []),
         ),
-        "Bounds are one-sided, by Clopper and Pearson (3/n if none was seen), over the points that were drawn from "
-        "the whole space and in which something was due; points to which a search was drawn by failures do not "
+        "Bounds are one-sided, by Clopper and Pearson (3/n if none was seen), over the combinations drawn from the "
+        "whole space in which something was due; those to which a search was drawn by failures do not "
         "count. They hold for this space and its values, not for the road.",
     )
 
@@ -198,15 +198,15 @@ def _rates(found: Hunt) -> Table:
     heads = (
         "Factor",
         "Value",
-        "Samples",
+        "Combinations",
         "Failed",
         "Nothing due",
         "Of the whole space",
         "Of these, pass % (interval)",
     )
     note = (
-        "Samples are those in which something was due; the others, in which nothing was, are neither passes nor "
-        "failures. A rate, with Wilson's interval (95 %), is given over the points alone that represent the whole "
+        "Combinations are those in which something was due; the others, in which nothing was, are neither passes "
+        "nor failures. A rate, with Wilson's interval (95 %), is given over those alone that represent the whole "
         "space; the others were drawn to failures, so that they are counted and give none."
     )
     return Table("rates", "Passed by factor", heads, tuple(lines), note, heads=2)
@@ -265,7 +265,7 @@ def _sensitivity(found: Hunt) -> Table:
         for factor, share, rank in sensitivity(found)
     ]
     note = (
-        "Over the points that represent the whole space: the share of the margin's variance that the factor "
+        "Over the combinations that represent the whole space: the share of the margin's variance that the factor "
         "explains by itself (first-order Sobol index from given data, corrected for the number of levels), and its "
         "rank correlation with the margin (Spearman): below 0, a higher number is worse."
     )
@@ -306,9 +306,9 @@ def _pairs(found: Hunt) -> Table:
     return Table(
         "two_factors",
         "Two factors at a time",
-        ("Factors and values", "Failed", "Samples"),
+        ("Factors and values", "Failed", "Combinations"),
         tuple(line[1:] for line in lines[:MOST_PAIRS]),
-        f"The {MOST_PAIRS} pairs of values with the most failures for their samples, by Wilson's lower bound. "
+        f"The {MOST_PAIRS} pairs of values with the most failures for their combinations, by Wilson's lower bound. "
         "Counts, not rates: samplers are drawn to failures.",
     )
 
@@ -332,7 +332,7 @@ def _maps(found: Hunt) -> list[Table]:
             (row, *(_share_of(cells.get((row, column), ())) for column in columns))
             for row in dict.fromkeys(one.levels)
         )
-        note = f"Failures of samples. Rows are {_named(one)}, columns {_named(other)}; – was not sampled."
+        note = f"Failures of combinations. Rows are {_named(one)}, columns {_named(other)}; – was not tried."
         names = f"{label_of(one.name)[0]} and {label_of(other.name)[0]}"
         made.append(Table(f"map_{number}", f"Map of {names}", (_named(one), *columns), rows, note))
     return made
@@ -354,7 +354,7 @@ def _cell(one: Factor, other: Factor, cell: tuple[str, str], failed: Sequence[bo
 def _unsteady(found: Hunt) -> Table:
     lines = [("passed when repeated", _point(each), each.outcome.trial) for each in found.unsteady]
     lines += [("not reduced", _point(each), each.outcome.trial) for each in found.not_reduced]
-    return Table("other", "Other failures", ("What", "Where", "Trial"), tuple(lines), heads=3)
+    return Table("other", "Other failures", ("What", "Where", "Run"), tuple(lines), heads=3)
 
 
 def _nothing_due(found: Hunt) -> Table:
@@ -362,8 +362,8 @@ def _nothing_due(found: Hunt) -> Table:
     more = f" {len(empty) - MOST_EMPTY} more are in tried.jsonl." if len(empty) > MOST_EMPTY else ""
     return Table(
         "nothing_due",
-        "Trials in which nothing was due",
-        ("Where", "Why", "Trial"),
+        "Runs in which nothing was due",
+        ("Where", "Why", "Run"),
         tuple((_point(each), each.outcome.nothing_due, each.outcome.trial) for each in empty[:MOST_EMPTY]),
         "Nothing that the space's rule judges required an act, and the agent did nothing wrong: whoever does "
         "nothing gets the same. They are neither passes nor failures, no rate counts them, and samplers are drawn "
@@ -409,9 +409,9 @@ def sentence(found: Hunt, agent: str) -> str:
 def of_due(what: str, failed: int, due: int, empty: int) -> str:
     """How many failed, of the trials in which something was due, which is what every count of failures is of."""
     if not due:
-        trials = "the only trial" if empty == 1 else f"any of {counted(empty, 'trial')}"
+        trials = "the only run" if empty == 1 else f"any of {counted(empty, 'run')}"
         return f"Nothing was due in {trials}, so that nothing is known."
-    told = f"{what} {failed or 'none'} of {counted(due, 'trial')} in which something was due"
+    told = f"{what} {failed or 'none'} of {counted(due, 'run')} in which something was due"
     return f"{told}; in {empty} more nothing was due." if empty else f"{told}."
 
 

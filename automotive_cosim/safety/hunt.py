@@ -175,7 +175,9 @@ def hunt(
     run = _Runner(found, evaluate)
     nominal = run(Phase.NOMINAL, space.nominal).outcome
     if not nominal.held and not nominal.failed:
-        raise UserError(f"the nominal point is not judged ({nominal.error}); give another, the first of each list")
+        raise UserError(
+            f"the nominal combination is not judged ({nominal.error}); give another, the first of each list"
+        )
     passed, stale, at_once = 0, 0, [found.tried[0]] if nominal.failed else []
     for _ in range(MOST_ASKED * budget):
         if found.run >= budget:

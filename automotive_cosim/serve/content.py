@@ -37,7 +37,7 @@ HEAD = (
     *("goal", "tokens_in", "tokens_out", "model_seconds"),
 )
 SHOWN = (
-    *("id", "task", "half", "scenario", "agent", "model", "seed", "repeat"),
+    *("id", "task", "half", "pair", "scenario", "agent", "model", "seed", "repeat"),
     *("dimension", "module"),
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )
@@ -231,6 +231,8 @@ class Content:
             running = is_being_written(entry.folder / "lock")
             planned = manifest.get("episodes")
             told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
+            if (study := kind_of(manifest["plan"])) is not None:
+                told |= {"unit": study.unit, "seeds": len(manifest["plan"].get("seeds", ()))}
             told["is_search"] = (entry.folder / PAGE).is_file()
             return {**shared, **told}
         return {**shared, "beside": self.records.beside(entry), **self._head(self.records.trial(entry, None))}
@@ -278,7 +280,7 @@ class Content:
         }
 
     def _drive_rows(self, entry: RecordEntry, rows: Iterable[DriveTrialRow]) -> list[Json]:
-        names = ("id", "family", "scenario", "season", "agent", "model", "seed", "repeat",
+        names = ("id", "name", "family", "scenario", "season", "agent", "model", "seed", "repeat",
                  "value", "error", "error_kind", "end", "steps")  # fmt: skip
         return [
             {name: getattr(row, name) for name in names}

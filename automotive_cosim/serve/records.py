@@ -125,7 +125,7 @@ class RecordFolders:
                 for path in paths:
                     self.file(entry, *path.relative_to(entry.folder).parts)
                 return folder
-        raise NotHereError(f"this record has no trial {trial!r}" if trial else "this record is no trial")
+        raise NotHereError(f"this record has no run {trial!r}" if trial else "this record is of no run")
 
     def picture(self, entry: RecordEntry, folder: Path, step: int, of: PictureOf = screenshot) -> Path:
         """The screenshot of a step that changed the screen, or its view through the windshield, a JPEG.

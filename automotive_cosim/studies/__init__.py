@@ -19,14 +19,14 @@ versions     compares two runs of one study
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from automotive_cosim.studies.reroute.results import load_study
+    from automotive_cosim.studies.content import load_study
 
 __all__ = ["load_study"]
 
 
 def __getattr__(name: str) -> object:
     if name == "load_study":  # loaded on first use: the command line reads the settings alone
-        from automotive_cosim.studies.reroute.results import load_study
+        from automotive_cosim.studies.content import load_study
 
         return load_study
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Generic, Self, TypeVar
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.files import write_files
@@ -16,6 +18,10 @@ from automotive_cosim.report.templates import render
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import cannot_write, read_manifest, read_rows
 from automotive_cosim.studies.plan import plan_of
+from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, RerouteSettings
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 PlanT = TypeVar("PlanT")
 StudyRowT = TypeVar("StudyRowT", bound=JobRow)
@@ -33,6 +39,12 @@ class StudyContent(Generic[PlanT, StudyRowT]):
 
     plan_type: ClassVar[type[Any]]
     row_type: ClassVar[type[Any]]
+    line_is: ClassVar[str]
+    """What a line of its data frame is about, in words."""
+
+    def lines(self) -> Iterator[Json]:
+        """The lines of its data frame, each with its seed."""
+        raise NotImplementedError
 
     @property
     def errors(self) -> tuple[StudyRowT, ...]:
@@ -68,6 +80,44 @@ class ShownStudy:
     """By name."""
 
 
+CONTENTS = {
+    RerouteSettings.kind: "reroute.results:Study",
+    CongestionSettings.kind: "congestion.results:CongestionStudy",
+    AdoptionSettings.kind: "adoption.adoption:AdoptionStudy",
+    DaysSettings.kind: "days.days:DaysStudy",
+}
+"""The content of each kind of study, beneath ``automotive_cosim.studies``."""
+
+
+def load_study(folder: Path | str) -> pd.DataFrame:
+    """A study of any kind as a data frame, every line with its seed; of several networks, with the network first.
+
+    A line is a choice of a policy at a decision, with news of an age, at a compliance (``reroute``); the traffic
+    without a measure or with one (``congestion``); cars at a share (``adoption``); or a day of a share of advised
+    drivers (``days``).
+
+    Raises:
+        UserError: it is not a study's folder, or is damaged.
+        SetupError: pandas is not installed.
+    """
+    try:
+        import pandas as pd
+    except ImportError as error:
+        raise SetupError(f"load_study requires pandas: {install_hint('reports')}") from error
+    home = Path(folder)
+    parts = [] if (home / "manifest.json").is_file() else sorted(home.glob("[0-9][0-9]_*/manifest.json"))
+    lines = [{"network": part.parent.name[3:]} | line for part in parts for line in _lines(part.parent)]
+    return pd.DataFrame(lines if parts else _lines(home))
+
+
+def _lines(folder: Path) -> list[Json]:
+    kind = read_manifest(folder)["plan"].get("study")
+    if kind not in CONTENTS:
+        raise UserError(f"{folder} is no study; automotive_cosim.load_results reads evaluations")
+    content: type[StudyContent[Any, Any]] = resolve_name(f"automotive_cosim.studies.{CONTENTS[kind]}")
+    return list(content.read(folder).lines())
+
+
 def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:
     """Writes ``report.html``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
 
@@ -87,6 +137,7 @@ def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:
             errors=len(study.errors),
             missing=len(plan.jobs()) - len(study.rows),
             plan=plan.as_json(),
+            of=study.line_is,
             starts=study.manifest["starts"],
         )
         with drafted(folder / "report.html") as file:

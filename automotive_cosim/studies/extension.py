@@ -27,10 +27,11 @@ def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
 KINDS = {
     RerouteSettings.kind: ResultsKind(
         f"{HOME}.reroute.page:write_study",
+        "drive",
         f"{HOME}.reroute.decisions:attributed",
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
-    CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion"),
-    AdoptionSettings.kind: ResultsKind(f"{HOME}.adoption.page:write_adoption"),
-    DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days"),
+    CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion", "seed"),
+    AdoptionSettings.kind: ResultsKind(f"{HOME}.adoption.page:write_adoption", "seed"),
+    DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days", "share of a seed"),
 }

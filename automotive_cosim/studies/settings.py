@@ -104,14 +104,14 @@ class RerouteSettings(DrivenSettings):
     per_drive: Annotated[int, Ge(1), Le(50)] = 5
     """Maximum number of decisions per drive."""
     placebo_every: Annotated[int, Ge(0), Le(1_000_000)] = 1
-    """One placebo in this many drives with a decision; 0 for none. Replicates contain it."""
+    """One placebo in this many drives with a decision; 0 for none. `--replicates` contain it."""
     replicates: Annotated[int, Ge(1), Le(100)] | Literal["auto"] = 1
-    """How many times each future is driven, with fresh random numbers; auto: more times where the sign of the mean
+    """How many times each route is driven, with fresh random numbers; auto: more times where the sign of the mean
     gain is unclear."""
     arrived: Annotated[float, Ge(0.5), Le(1)] = 0.95
-    """Share of the vehicles present at a decision that must arrive before its futures end."""
+    """Share of the vehicles present at a decision that must arrive before the drive ends."""
     limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
-    """Simulated seconds after which a future ends anyway."""
+    """Simulated seconds after which a drive ends anyway."""
     half_width_s: Annotated[Annotated[float, Ge(0.1), Le(3_600)] | None, Option("until")] = None
     """Add seeds until the mean gain is known to within this many seconds."""
     whole_drives: bool = False
@@ -125,7 +125,7 @@ class RerouteSettings(DrivenSettings):
     ego_class: Annotated[str, Option(default="SUMO's for cars")] = ""
     """SUMO's emission class of the ego, as Energy/default for an electric one."""
     trajectories: bool = False
-    """Store the ego's position in every future, step by step."""
+    """Store the ego's position on every route, step by step."""
     agent_steps: Annotated[int, Ge(1), Le(100)] = 12
     """Maximum number of an agent's actions per decision."""
 

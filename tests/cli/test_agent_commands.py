@@ -121,7 +121,7 @@ def test_a_single_run_is_replayed_and_a_change_is_found(cli, tmp_path):
     )
     assert "replay one" in (tmp_path / "one/summary.html").read_text(encoding="utf-8")
     refused = cli("replay", "one", "hvac")
-    assert (refused.code, refused.err) == (2, "error: one holds a single trial; omit 'hvac'\n")
+    assert (refused.code, refused.err) == (2, "error: one holds a single run; omit 'hvac'\n")
     record = json.loads((tmp_path / "one/trial.json").read_text(encoding="utf-8"))
     record["manifest"]["setup"]["seed"] += 1
     (tmp_path / "one/trial.json").write_text(json.dumps(record), encoding="utf-8")

@@ -64,7 +64,7 @@ def test_a_row_of_an_episode_that_was_not_planned_is_not_replayed(cli, tmp_path)
 def test_a_trial_that_version_0_2_recorded_is_refused(cli, tmp_path):
     (tmp_path / "steps.jsonl").touch()
     (tmp_path / "episode.json").write_text("{}")
-    _assert_refused(cli("replay", "."), "version 0.2 or an earlier one recorded it", "record the trial again")
+    _assert_refused(cli("replay", "."), "version 0.2 or an earlier one recorded it", "record the run again")
 
 
 @pytest.mark.parametrize("arguments", [["rnu"], ["--verson"], ["tasks", "show", "hvac_fan_mix"], ["tasks", "lst"]])

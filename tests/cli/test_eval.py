@@ -74,7 +74,7 @@ def test_an_agent_that_fails_is_judged_and_told(cli, tmp_path):
     ran = cli("eval", "--agents", "oracle,raises:Raises", *GRID, "--out", "e")
     assert ran.code == 0
     assert "1 succeeded; 2 of 2 planned episodes judged" in ran.out
-    assert "agent raises:Raises failed in 1 trial, e.g. " in ran.out
+    assert "agent raises:Raises failed in 1 run, e.g. " in ran.out
     assert "RuntimeError: broken" in ran.out
     ran = cli("eval", "--agents", "oracle,raises:Raises", *GRID, "--out", "e", "--at-least", "0.8")
     assert (ran.code, ran.err) == (1, "raises:Raises: 0 of 1 episode succeeded, a smaller share than 0.8\n")

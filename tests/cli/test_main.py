@@ -90,7 +90,7 @@ OTHERS = {
     ("a2a",), ("mcp",), ("serve",), ("measures",), ("report",), ("show", "screens"), ("show", "schema"),
     ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
     ("scenarios", "download"), ("publish", "bundle"), ("publish", "leaderboard"),
-    ("export",), ("keep",),
+    ("export",), ("keep",), ("ci", "init"),
 }  # fmt: skip
 """Commands whose result is a file, a server, or traffic that is kept."""
 

@@ -86,5 +86,5 @@ def test_of_an_evaluation_export_names_the_trials_with_a_road(cli: Cli, tmp_path
         (tmp_path / "e/pictures" / name / "road.jsonl.gz").touch()
     ran = cli("export", tmp_path / "e", "csv")
     told = " ".join(str(ran.err).split())
-    assert "is an evaluation; give one of its trials: " in told
+    assert "is an evaluation; give one of its runs: " in told
     assert "pictures/one, " in told

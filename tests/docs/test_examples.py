@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import runpy
 import shlex
 import shutil
@@ -41,10 +42,10 @@ case $1 in eval) exit $EVAL;; compare) exit $COMPARE;; esac
 
 
 @pytest.fixture
-def script(tmp_path):
-    """The script, as a service would call it, on a copy of the example with one task and seed: how it ended, and
-    what it asked the program for, in which folder."""
-    shutil.copytree(EXAMPLES / "my-agent", tmp_path / "checkout")
+def script(tmp_path, cli, monkeypatch):
+    """The script that ``ci init`` writes, as a service would call it, on a copy of the example with one task and
+    seed: how it ended, and what it asked the program for, in which folder."""
+    shutil.copytree(EXAMPLES / "my-agent", tmp_path / "checkout", ignore=shutil.ignore_patterns(".github"))
     plan = tmp_path / "checkout/plan.toml"
     whole = plan.read_text(encoding="utf-8")
     one = whole.replace("seeds = [3, 4]", "seeds = [4]").replace(
@@ -52,6 +53,9 @@ def script(tmp_path):
     )
     assert len(one) < len(whole) - 40
     plan.write_text(one, encoding="utf-8")
+    with monkeypatch.context() as patch:
+        patch.chdir(tmp_path / "checkout")
+        assert cli("ci", "init").code == 0
     stub, calls = tmp_path / "bin/automotive-cosim", tmp_path / "calls"
     stub.parent.mkdir()
     stub.write_text(STUB, encoding="utf-8")
@@ -62,7 +66,7 @@ def script(tmp_path):
         given = {"CALLS": str(calls), "EVAL": str(evaluates), "COMPARE": str(compares)}
         path = f"{stub.parent}{os.pathsep}{os.environ['PATH']}"
         ended = subprocess.run(
-            ["bash", SCRIPT, *words],
+            ["bash", "checkout/ci/evaluate.sh", *words],
             cwd=tmp_path,
             env={**os.environ, **given, "PATH": path},
             capture_output=True,
@@ -146,6 +150,23 @@ def test_the_action_takes_a_base_that_cannot_be_evaluated_for_no_baseline(tmp_pa
     assert ran.returncode == ends
     assert ("No baseline" in ran.stdout) == (code == 2)
     assert (tmp_path / "base").is_dir() == is_kept
+
+
+def test_ci_init_leaves_nothing_to_fill_in_and_overwrites_nothing(script, cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path / "checkout")
+    workflow, written = Path(".github/workflows/evaluate.yml"), Path("ci/evaluate.sh")
+    text = workflow.read_text(encoding="utf-8")
+    assert not re.search(r"@[A-Z]+@|OWNER|TODO", text)
+    steps = yaml.safe_load(text)["jobs"]["evaluate"]["steps"]
+    assert all("run" in each or "uses" in each for each in steps)
+    assert sum("ci/evaluate.sh" in each.get("run", "") for each in steps) == 2
+    assert written.read_text(encoding="utf-8") == SCRIPT.read_text(encoding="utf-8")
+    written.unlink()
+    workflow.write_text("mine", encoding="utf-8")
+    refused = cli("ci", "init")
+    assert (refused.code, workflow.read_text(encoding="utf-8"), written.exists()) == (2, "mine", False)
+    assert "evaluate.yml exists, and nothing is overwritten" in refused.err
+    assert cli("ci", "init", "none.toml").code == 2
 
 
 def test_the_script_says_how_it_is_called(script):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.drives.elsewhere import elsewhere
+from automotive_cosim.drives.elsewhere import elsewhere, name_of
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.scenarios import load, open_scenario
@@ -24,6 +24,12 @@ def test_the_trips_of_another_place_are_driven_in_turn_and_all_else_stays(place:
     assert planned(network_of(scenario), first, (*others, first)).legs
     assert len(script.trips) >= 2
     assert replace(script, scenario=PLAN.scenario, trips=PLAN.trips) == PLAN
+
+
+def test_a_drive_elsewhere_is_called_after_its_place() -> None:
+    assert name_of("grid_january", "grid") == name_of("grid_january", "") == "grid_january"
+    assert name_of("grid_january", "maps/heidelberg.sumocfg") == "heidelberg_january"
+    assert name_of("paris_july", "tokyo") == "tokyo_july"
 
 
 @pytest.mark.slow

@@ -46,6 +46,28 @@ def test_stable_baselines_check_has_nothing_to_say(flat):
         checker.check_env(flat)
 
 
+def test_stable_baselines_takes_copies_that_share_their_traffic(simulations):
+    sb3 = pytest.importorskip("stable_baselines3", reason="the extra rl is not installed", exc_type=ImportError)
+    from automotive_cosim.envs.sb3 import vec_env
+
+    envs = vec_env(num_envs=2, tasks=TASKS[:1], scenario="grid", max_steps=3, simulations=simulations)
+    envs.seed(0)
+    seen = envs.reset()
+    alone = FlatEnv(TASKS[:1], scenario="grid", max_steps=3, simulations=simulations)
+    assert (seen[1] == alone.reset(seed=1, options={"traffic_seed": 0})[0]).all()
+    for _ in range(3):
+        seen, _, dones, infos = envs.step(np.array([0, 1]))
+        last, *_ = alone.step(np.int64(1))
+    assert dones.all()
+    assert infos[1]["TimeLimit.truncated"]
+    assert (infos[1]["terminal_observation"] == last).all()
+    assert not (seen[1] == last).all(), "the next episode has begun"
+    alone.close()
+    learned = sb3.PPO("MlpPolicy", envs, n_steps=4, batch_size=8, seed=0).learn(8)
+    assert learned.num_timesteps == 8
+    envs.close()
+
+
 def test_there_are_at_least_twenty_actions(flat):
     assert flat.action_space.n == len(APPS) + len(CONTROLS) + len(ENDS) >= 20
 

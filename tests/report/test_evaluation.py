@@ -172,12 +172,15 @@ def test_pairs_need_both_halves_and_alarms_are_counted(folder):
 def test_an_error_in_a_half_is_one_of_the_pair_unless_the_other_is_lost():
     half = next(job.planned() for job in PLAN.jobs() if job.pair)
 
-    def outcome(first, second):
-        return pairs([replace(half, success=success) for success in (first, second)])[0][0].success
+    def outcome(first, second, error="gone"):
+        return pairs([replace(half, success=won, error=error if won is None else None) for won in (first, second)])[
+            0
+        ][0].success
 
     assert [outcome(True, True), outcome(True, None), outcome(None, None), outcome(False, None)] == [
         True, None, None, False,
     ]  # fmt: skip
+    assert outcome(False, None, error=None) is None, "a half that was not run"
     assert pairs([replace(half, success=True)]) == []
 
 

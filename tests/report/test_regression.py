@@ -122,7 +122,7 @@ def test_the_headline_has_the_figures_of_the_comparison_it_prints(tmp_path):
     assert [rate.value for rate in found[0].rates] == [1 - 1 / whole] * 2
     assert found[0].outcome(0.0) == "worse"
     told = markdown(found, 0.0).splitlines()[0]
-    assert f"100% before, {1 - 1 / (whole - 1):.0%} after" in told
+    assert f"success 100% before, {1 - 1 / (whole - 1):.0%} after" in told
     broken = changes(write(tmp_path / "c", lost={1}), write(tmp_path / "d", lost={1}, errors={1}))
     assert "1 is no longer judged" in markdown(broken, 0.0).splitlines()[0]
 

@@ -95,7 +95,7 @@ def test_a_step_that_commanded_nothing_changes_nothing(folder: Path, simulations
     assert effect.is_neutral
     assert effect.act == "commands nothing"
     assert not (folder / FILE).exists(), "only what is measured in full is kept"
-    with pytest.raises(UserError, match="no step 9; the trial's steps are 1 to 5"):
+    with pytest.raises(UserError, match="no step 9; the run's steps are 1 to 5"):
         attribute(folder, only=[9], simulations=simulations)
 
 

@@ -4,6 +4,7 @@ import json
 import pickle
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -150,23 +151,28 @@ def rows_of(folder: Path) -> dict[str, EpisodeRow]:
 
 @pytest.mark.slow
 def test_a_budget_holds_over_all_workers_and_the_rest_is_run_later(sumo: None, tmp_path: Path) -> None:
-    whole = run_plan(plan(), tmp_path / "whole", executor=Processes(2))
-    assert (whole.judged, whole.stopped) == (4, "")
+    """Wherever it stops, both agents have run the same episodes, but for one at most of each worker."""
+    wanted = plan(agents=["t3a", "no-op"])
+    whole = run_plan(wanted, tmp_path / "whole", executor=Processes(2))
+    assert (whole.judged, whole.stopped) == (8, "")
     assert not (tmp_path / "whole" / SPENT).exists()
     rows = rows_of(tmp_path / "whole").values()
     each = max(row.tokens_in + row.tokens_out for row in rows)
     total = sum(row.tokens_in + row.tokens_out for row in rows)
-    folder = tmp_path / "e"
-    end = run_plan(plan(), folder, executor=Processes(2), budget=Budget(tokens=total // 2))
+    folder, part = tmp_path / "e", 3 * total // 4
+    end = run_plan(wanted, folder, executor=Processes(2), budget=Budget(tokens=part))
     assert "budget is spent" in end.stopped
-    assert 0 < end.judged < 4
+    assert 0 < end.judged < 8
     assert end.errors == 0
+    met = Counter(row.instance for row in rows_of(folder).values())
+    assert sum(count == 1 for count in met.values()) <= 2
+    assert 2 in met.values()
     spent = json.loads((folder / SPENT).read_text())["tokens"]
-    assert total // 2 <= spent <= total // 2 + 2 * each
-    again = run_plan(plan(), folder, executor=Processes(2), budget=Budget(tokens=total // 2))
+    assert part <= spent <= part + 2 * each
+    again = run_plan(wanted, folder, executor=Processes(2), budget=Budget(tokens=part))
     assert (again.ran, "budget is spent" in again.stopped) == (0, True)
-    end = run_plan(plan(), folder, executor=Processes(2), budget=Budget(tokens=3 * total))
-    assert (end.judged, end.stopped) == (4, "")
+    end = run_plan(wanted, folder, executor=Processes(2), budget=Budget(tokens=3 * total))
+    assert (end.judged, end.stopped) == (8, "")
     assert {name: steady(row) for name, row in rows_of(folder).items()} == {
         name: steady(row) for name, row in rows_of(tmp_path / "whole").items()
     }

@@ -99,7 +99,7 @@ def test_tasks_and_drives_are_planned_together_and_apart() -> None:
     assert both == set.union(*apart)
     assert list(map(len, apart)) == [1, 1]
     plans = map(make_plan, (tasks, drives, tasks | drives))
-    assert [unit_of(plan.as_json()) for plan in plans] == ["episode", "drive", "trial"]
+    assert [unit_of(plan.as_json()) for plan in plans] == ["episode", "drive", "run"]
 
 
 def test_a_drive_belongs_to_the_set_of_its_seed() -> None:
@@ -316,6 +316,15 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     assert [path.name for path in (tmp_path / "drive").glob("steps*")] == ["steps.jsonl.gz"]
     for name in ("step", "action", "thought_s", "feedback", "sha256"):
         assert [line[name] for line in recorded] == [step[name] for step in steps]
+    waits = [
+        (line["words"], round(line["at_s"] - before["at_s"]))
+        for before, line in pairwise(recorded)
+        if line["action"] and line["action"]["action_type"] == "wait"
+    ]
+    assert waits
+    assert all(abs(int(words.split()[1]) - passed_s) <= 1 for words, passed_s in waits), (
+        "what passed, not what was asked"
+    )
     told = read_trial(tmp_path / "drive")
     assert told["row"] == as_json(first)
     assert told["result"] == {"timeline": timeline}

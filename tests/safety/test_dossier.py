@@ -84,8 +84,8 @@ def test_figures_are_those_of_the_rows(tmp_path: Path) -> None:
     page, pdf = write_dossier(run(tmp_path / "runs", missed=2))
     folder = tmp_path / "runs"
     domain = {(row["Attribute"], row["Value"]): row for row in table(folder, "domain")}
-    assert domain["Place", "grid"]["Trials"] == "6"
-    assert [row["Value"] for row in table(folder, "domain") if row["Trials"] == "none" and row["Attribute"] in
+    assert domain["Place", "grid"]["Runs"] == "6"
+    assert [row["Value"] for row in table(folder, "domain") if row["Runs"] == "none" and row["Attribute"] in
             ("Place", "Language", "Weather")] == ["rain, snow or ice"]  # fmt: skip
     assert domain["Road", "primary"]["Hours"] == "2.40"
     assert domain["Weather", "fog"]["Kilometres"] == "12.0"
@@ -98,7 +98,7 @@ def test_figures_are_those_of_the_rows(tmp_path: Path) -> None:
     assert listed == [("0:12", "missed", "tunnel")] * 2
     assert "due from 0:12 to 0:20" in table(folder, "faults")[0]["Why"]
     measures = {row["Measure"]: row for row in table(folder, "measures")}
-    assert measures["Min TTC ahead, s"]["Critical trials, or interval"].startswith("≤ 3: 2 of 6")
+    assert measures["Min TTC ahead, s"]["Critical runs, or interval"].startswith("≤ 3: 2 of 6")
     assert measures["TET ahead, s/h"]["Median or rate"] == "2.50"
     text = page.read_text("utf-8")
     assert "no claim of compliance" in text
@@ -133,7 +133,7 @@ def test_drives_with_nothing_due_neither_pass_nor_fail(tmp_path: Path) -> None:
     assert failing(subject)[:2] == (1, 1)
     told = [paragraph for section in dossier(subject).sections for paragraph in section.told]
     assert (
-        "asurada failed in 1 of 1 trial in which something was due; in 5 more nothing was due (2.40 h driven)."
+        "asurada failed in 1 of 1 run in which something was due; in 5 more nothing was due (2.40 h driven)."
         in told
     )
     assert "something was due in 1 of them" in dossier(subject).sentence
@@ -170,7 +170,7 @@ def test_a_search_counts_its_samples_and_no_rates_that_no_row_explains(tmp_path:
     search = replace(subject, findings=findings | {"rule": rule, "sampled_trials": sampled})
     made = dossier(search)
     assert shown(search).startswith(
-        "asurada failed in 1 of 5 trials in which something was due (2.00 h driven). 1 more run repeated"
+        "asurada failed in 1 of 5 runs in which something was due (2.00 h driven). 1 more run repeated"
     )
     tables = {table.name: table for section in made.sections for table in section.tables}
     assert {row[1] for row in tables["events"].rows} == {"5"}
@@ -194,7 +194,7 @@ def test_few_trials_leave_a_claim_limited_and_the_report_leads_with_what_is_open
     first = dossier(made).sections[0]
     assert first.title == "What was not shown"
     driven, never, residual = first.told
-    assert driven == f"{0.4 * trials:.2f} h and {14 * trials} km were driven in {counted(trials, 'trial')}; " + (
+    assert driven == f"{0.4 * trials:.2f} h and {14 * trials} km were driven in {counted(trials, 'run')}; " + (
         f"something was due in {trials} of them."
     )
     assert "weather rain, snow or ice;" in never
@@ -210,7 +210,7 @@ def test_a_drive_alone_has_a_report(tmp_path: Path) -> None:
     subject = read_subject(alone)
     assert [each.id for each in subject.failed] == [row.id]
     page, _ = write_dossier(alone)
-    assert "of 1 trial in which something was due" in page.read_text("utf-8")
+    assert "of 1 run in which something was due" in page.read_text("utf-8")
 
 
 def test_a_minimal_case_contradicts_although_no_sample_failed(tmp_path: Path) -> None:
@@ -233,7 +233,7 @@ def test_an_agent_must_be_named_if_there_are_several(tmp_path: Path) -> None:
         read_subject(folder)
     subject = read_subject(folder, "asurada")
     assert len(subject.rows) == len(subject.reference) == 6
-    with pytest.raises(UserError, match="no trial of agent 'me'"):
+    with pytest.raises(UserError, match="no run of agent 'me'"):
         read_subject(folder, "me")
     assert subject.others == ["m3a", "rule-perfect"]
     assert read_subject(run(tmp_path / "two", 0, ("asurada", "rule-perfect"))).others == ["rule-perfect"]

@@ -112,7 +112,7 @@ def test_a_search_passes_with_as_many_failures_as_are_allowed() -> None:
     assert too_many(found, failed) == ""
     assert (
         too_many(found, failed - 1)
-        == f"{failed} of 64 trials in which something was due failed, more than {failed - 1}"
+        == f"{failed} of 64 runs in which something was due failed, more than {failed - 1}"
     )
 
 
@@ -166,7 +166,7 @@ def test_a_nominal_point_that_fails_is_a_finding_with_what_passes_beside_it() ->
     assert sentence(found, "me").startswith("me fails with everything nominal. Beside that, me failed in ")
     (alone,) = searched(of=lambda point: -1.0).minimal
     assert (alone.neighbour, alone.beside) == (None, "")
-    with pytest.raises(UserError, match="the nominal point is not judged"):
+    with pytest.raises(UserError, match="the nominal combination is not judged"):
         hunt(SPACE, lambda *_: TriedOutcome(None, False, error="SUMO"), RandomSampler(SPACE, 9, default_rng(0)), 9)
 
 
@@ -215,8 +215,8 @@ def test_where_nothing_is_ever_due_nothing_is_known() -> None:
     found = hunt(SPACE, evaluate, Listener(SPACE, 9, default_rng(0)), 9)
     assert min(told) > 1, "further from failing than any pass"
     assert (as_json(found)["samples"], unseen(found).upper) == (0, None)
-    assert sentence(found, "me") == "Nothing was due in any of 9 trials, so that nothing is known."
-    assert too_many(found, 9) == "nothing was due in any trial, so that nothing is known"
+    assert sentence(found, "me") == "Nothing was due in any of 9 runs, so that nothing is known."
+    assert too_many(found, 9) == "nothing was due in any run, so that nothing is known"
 
 
 @pytest.mark.parametrize("sampler", ["climb", "random", "sobol"])
@@ -249,7 +249,7 @@ def test_points_at_which_nothing_comes_due_are_given_to_no_agent(sampler: str) -
     assert looking.passed_over > 0 == blind.passed_over
     assert unseen(looking).even >= unseen(blind).even
     assert sentence(looking, "me").startswith("me failed in ")
-    assert " of 32 trials in which something was due" in sentence(looking, "me")
+    assert " of 32 runs in which something was due" in sentence(looking, "me")
 
 
 def test_a_search_where_nothing_comes_due_goes_on_all_the_same() -> None:
@@ -344,10 +344,10 @@ def test_a_space_of_few_points_is_used_up() -> None:
 @pytest.mark.parametrize(
     ("budget", "told"),
     [
-        (SearchBudget(64), "8 of 64 points, about 28 minutes left for the points"),
-        (SearchBudget(64, hours=1 / 3), "8 of 64 points, 10 of 20 minutes, about 10 minutes left at most"),
-        (SearchBudget(hours=2), "8 points, 10 of 120 minutes, about 110 minutes left at most"),
-        (SearchBudget(usd=5), "8 points"),
+        (SearchBudget(64), "8 of 64 combinations, about 28 minutes left for the combinations"),
+        (SearchBudget(64, hours=1 / 3), "8 of 64 combinations, 10 of 20 minutes, about 10 minutes left at most"),
+        (SearchBudget(hours=2), "8 combinations, 10 of 120 minutes, about 110 minutes left at most"),
+        (SearchBudget(usd=5), "8 combinations"),
     ],
 )
 def test_progress_is_told_by_the_limit_that_ends_the_search(budget: SearchBudget, told: str) -> None:

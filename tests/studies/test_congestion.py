@@ -17,6 +17,7 @@ from automotive_cosim.cli.results import report
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.incidents import EgoIncident
 from automotive_cosim.run.batch import Progress
+from automotive_cosim.studies import load_study
 from automotive_cosim.studies.commands import app
 from automotive_cosim.studies.congestion.drive import CONGESTION
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows
@@ -253,6 +254,22 @@ def test_who_is_advised_leaves_the_roadworks(two_ways: Draw, tmp_path: Path) -> 
     assert answer(found).startswith("“advice to 100 % of the cars”, of 2 measures the strongest, saves")
 
 
+def test_the_frame_has_each_seed_and_measure_of_every_network(driven: Path, tmp_path: Path) -> None:
+    frame, found = load_study(driven), CongestionStudy.read(driven)
+    assert list(frame.measure.fillna("")) == list(found.measures)
+    assert set(frame.seed) == {0}
+    (_, works) = next(found.outcomes(found.measures[1]))
+    assert frame.delay_vehicle_h_per_h[1] == delay_h(found.plan, works)
+    for name in ("01_a", "02_b"):
+        shutil.copytree(driven, tmp_path / "both" / name)
+    both = load_study(tmp_path / "both")
+    assert list(both.network.unique()) == ["a", "b"]
+    assert len(both) == 2 * len(frame)
+    (tmp_path / "none").mkdir()
+    with pytest.raises(UserError):
+        load_study(tmp_path / "none")
+
+
 def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> None:
     again = shutil.copytree(driven, tmp_path / "suite" / "again")
     told = CliRunner().invoke(app, ["compare", str(driven), str(again), "--json"])
@@ -287,7 +304,10 @@ def test_the_report_is_whole(driven: Path) -> None:
     report(driven)
     page = (driven / "report.html").read_text(encoding="utf-8")
     assert page.index("<h1>“roadworks on main at 9 km/h”") < page.index("The network with each measure")
-    for name in ("delay", "map", "map_change", "mfd", "time_space", "time_space_measure"):
+    assert 'automotive_cosim.studies.load_study(".")' in page
+    maps = {path.stem for path in (driven / "plots").glob("map_change*.svg")}
+    assert maps == {"map_change", "map_change_2", "map_change_3"}, "each measure has its own"
+    for name in ("delay", "map", *maps, "mfd", "time_space", "time_space_measure"):
         assert (driven / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
         assert (driven / "plots" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
         assert (driven / "plots" / f"{name}.png").read_bytes().startswith(b"\x89PNG")

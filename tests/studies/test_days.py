@@ -85,6 +85,10 @@ def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
     assert [str(each[8]) for each in table.rows] == ["+80.0", "+30.0", "+25.6", "–"]
     assert set(charts(found)) == {"days", "shares"}
     assert warnings(found) == ["2 seeds: no interval of a mean below 10 seeds."]
+    lines = list(found.lines())
+    assert len(lines) == sum(len(each.days) for each in found.rows)
+    assert {line["seed"] for line in lines} == {0, 1}
+    assert lines[1]["mean_s"] == 200.0
     far = replace(found, rows=(*found.rows[:2], row(None, 0, 150.0), *found.rows[4:6], row(None, 1, 150.0)))
     assert any("relative gap of 10.0%, more than 2%" in each for each in warnings(far))
     restless = replace(found, rows=(*found.rows[:5], row(1.0, 1, 200.0, 100.0), found.rows[6]))

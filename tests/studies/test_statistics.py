@@ -270,7 +270,7 @@ def test_a_gain_is_congestion_avoided_and_way_saved() -> None:
     assert [cell.split(" ")[0] for cell in map(str, table.rows[0][3:6])] == ["+50.0", "+80.0", "−30.0"]
     assert answer(study(rows)).startswith(
         "Rerouting by “always” saves 50 s (50 to 50) a decision, as 80 s less is lost in congestion and the route "
-        "itself takes 30 s more, over"
+        "itself takes 30 s more, against keeping the route, over"
     )
     old = replace(drive(decision(50.0)), stay=replace(NOTHING, lost_s=None))
     assert not parts(study([old])).rows, "rows of earlier versions do not say"
@@ -299,7 +299,8 @@ def test_the_answer_names_a_policy_to_follow_at_every_share_of_rerouting_cars() 
     plan = replace(found.plan, policies=("never", "always", "best"), shares=(0.0, 0.5))
     assert answer(replace(found, plan=plan)).startswith(
         "Rerouting by “always” costs 11 s (11 to 11) a decision with 0% of the other cars rerouting and saves "
-        "10 s (10 to 10) a decision with 50% of the other cars rerouting, over 60 decisions of 30 seeds"
+        "10 s (10 to 10) a decision with 50% of the other cars rerouting, against "
+        "keeping the route, over 60 decisions of 30 seeds"
     )
 
 

@@ -28,7 +28,7 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.road import read_record
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
-from automotive_cosim.studies import intervals
+from automotive_cosim.studies import intervals, load_study
 from automotive_cosim.studies.calls.chance import Fresh
 from automotive_cosim.studies.commands import app
 from automotive_cosim.studies.reroute import batch
@@ -42,7 +42,7 @@ from automotive_cosim.studies.reroute.live import LiveDrive
 from automotive_cosim.studies.reroute.page import write_study
 from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.studies.reroute.points import NOT_CLEARED
-from automotive_cosim.studies.reroute.results import Study, load_study
+from automotive_cosim.studies.reroute.results import Study
 from automotive_cosim.studies.reroute.rows import NOTHING, TripRow
 from automotive_cosim.studies.reroute.tables import policies as policy_table
 from automotive_cosim.studies.reroute.tables import tables

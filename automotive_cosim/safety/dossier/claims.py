@@ -94,14 +94,14 @@ def _quiet(subject: Subject) -> Claim:
     if subject.findings is None:
         evidence += f", at most {number_told(rate_upper_bound(nuisances, hours))} an hour."
     else:
-        evidence += "; trials of a search give no rates."
+        evidence += "; runs of a search give no rates."
     section = "unseen" if subject.findings is None else "failures"
     return Claim(text, "contradicted" if nuisances else "limited", evidence, section)
 
 
 def _known_hazards(subject: Subject) -> Claim:
     text = "Known hazardous situations (area 2 of ISO 21448) are few and described by what triggers them."
-    failed = counted(len(subject.failed), "failing trial")
+    failed = counted(len(subject.failed), "failing run")
     if subject.findings is None:
         status = "not examined" if subject.failed else "limited"
         return Claim(text, status, f"{failed}; no search has found what triggers them.", "failures")
@@ -132,7 +132,7 @@ def _covered(subject: Subject) -> Claim:
     return Claim(
         "The run covers the operational domain.",
         status,
-        f"{covered} of {len(values)} values have a trial.",
+        f"{covered} of {len(values)} values have a run.",
         "domain",
     )
 
@@ -143,6 +143,6 @@ def _traced(subject: Subject) -> Claim:
     have = "has a hash of its" if total == 1 else "have a hash of their"
     return Claim(
         "The evidence can be checked and repeated.", "supported" if traced == total else "limited",
-        f"{traced} of {counted(total, 'trial')} {have} trace; the files' hashes are listed.",
+        f"{traced} of {counted(total, 'run')} {have} trace; the files' hashes are listed.",
         "versions",
     )  # fmt: skip

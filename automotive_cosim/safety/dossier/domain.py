@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import datetime
 
 from automotive_cosim.contracts.given import Language
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import counted, model_and_options
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.order import ordered
 from automotive_cosim.measures.exposure import BANDS_KMH, ExposureCell, band_named
@@ -47,7 +47,7 @@ def summary(subject: Subject) -> Section:
 def item(subject: Subject) -> Section:
     """What was evaluated, and what was not."""
     conditions = sorted({", ".join(row.conditions.labels) or "as by default" for row in subject.rows})
-    models = ", ".join(sorted({row.model for row in subject.rows} - {NO_MODEL}))
+    models = ", ".join(sorted({model_and_options(row.model)[0] for row in subject.rows} - {NO_MODEL}))
     lines = [
         ("Item", "an agent that operates the cockpit of a car: it reads the screens and the car's data, and acts"),
         ("Agent", subject.agent),
@@ -140,8 +140,8 @@ def domain(subject: Subject) -> Section:
         if name in missing:
             lines.append((name, ", ".join(missing[name]), NONE, "–", "–"))
     table = Table(
-        "domain", "Operational domain", ("Attribute", "Value", "Trials", "Hours", "Kilometres"), tuple(lines),
-        "Values are those that the benchmark knows, of places and languages those of this run; a trial counts for "
+        "domain", "Operational domain", ("Attribute", "Value", "Runs", "Hours", "Kilometres"), tuple(lines),
+        "Values are those that the benchmark knows, of places and languages those of this run; a run counts for "
         "every value that it had. What has none is not covered by this run.", heads=2,
     )  # fmt: skip
     return Section("domain", "Operational domain covered", (), (table,))
@@ -173,7 +173,7 @@ def exposed(subject: Subject) -> Section:
     ordered = sorted(sums.items(), key=lambda entry: -entry[1][0])
     lines = tuple((*key, f"{hours:.3f}", f"{km:.2f}") for key, (hours, km) in ordered)
     total_km = sum(km for _, km in sums.values())
-    told = f"{subject.hours:.2f} hours and {total_km:.1f} kilometres in {counted(len(subject.judged), 'trial')}."
+    told = f"{subject.hours:.2f} hours and {total_km:.1f} kilometres in {counted(len(subject.judged), 'run')}."
     return Section(
         "exposure", "Exposure", (told,),
         (Table("exposure", "Exposure", ("Road", "Weather", "Light", "Hours", "Kilometres"), lines, heads=3),),

@@ -27,7 +27,7 @@ DRAWS = 2000
 """Bootstrap samples, at which the second digit of a bound is stable."""
 LEAST_CLUSTERS = 5
 """Fewer trials give no bootstrap interval."""
-NO_RATES = "A search's trials are drawn to failures, so that they are counted and give no rates."
+NO_RATES = "A search's runs are drawn to failures, so that they are counted and give no rates."
 
 
 def events(subject: Subject) -> Section:
@@ -100,7 +100,7 @@ def failures(subject: Subject) -> Section:
         heads = "No.", "Fails with", "What is missing", "Act, or missing act", "Beside it", "Replay"
         note = (
             "Each failed three times of three; factors that are not named are nominal. Replay: automotive-cosim "
-            "eval --plan with that file, which also has what is beside it: the nearest point that does not fail."
+            "eval --plan with that file, which also has what is beside it: the nearest that does not fail."
         )
         if cases:
             made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=6))
@@ -117,22 +117,22 @@ def failures(subject: Subject) -> Section:
     if lines:
         more = len(subject.failed) - len(lines)
         note = (
-            "automotive-cosim replay FOLDER TRIAL runs a trial again and says whether every step is the same, bit "
-            "for bit; automotive-cosim attribute FOLDER TRIAL finds the act, or the missing act, that made it."
+            "automotive-cosim replay FOLDER ID runs a run again and says whether every step is the same, bit "
+            "for bit; automotive-cosim attribute FOLDER ID finds the act, or the missing act, that made it."
             + (f" {more} more are in the data." if more else "")
         )
         made.append(
             Table(
                 "failures",
-                "Failing trials",
-                ("Trial", "What is missing", "Act, or missing act"),
+                "Failing runs",
+                ("Run", "What is missing", "Act, or missing act"),
                 lines,
                 note,
                 heads=3,
             )
         )
     elif not made:
-        told.append(f"None of {counted(len(subject.due), 'trial')} in which something was due failed.")
+        told.append(f"None of {counted(len(subject.due), 'run')} in which something was due failed.")
     made += [listed for in_space in (True, False) if (listed := _faults(subject, in_space=in_space)).rows]
     return Section("failures", "Failures", tuple(told), tuple(made))
 
@@ -150,7 +150,7 @@ def _faults(subject: Subject, *, in_space: bool) -> Table:
     several = len({(row.repeat, row.settings, row.conditions) for row in drives}) > 1
     lines = tuple(
         (
-            row.id if several else f"{row.family}, seed {row.seed}",
+            row.id if several else f"{row.name}, seed {row.seed}",
             clock(fault.time_s),
             fault.what,
             fault.about,
@@ -163,7 +163,7 @@ def _faults(subject: Subject, *, in_space: bool) -> Table:
         "When: minutes and seconds since departure at which something was due, or the agent acted. Why: what was "
         "there, from when to when something was due, and what came; of a needless act, what speaks against it of "
         "what could be known, and when it would have been right."
-        + (f" {more} more are in the trials of the data." if more else "")
+        + (f" {more} more are in the runs of the data." if more else "")
     )
     heads = "Drive", "When", "What", "Event or act", "Why"
     if in_space:
@@ -207,13 +207,13 @@ def measured(subject: Subject) -> Section:
         if value is not None:
             lines.append((name, "–", f"{value:.2f}", bounds))
     note = (
-        "Worst and median of the trials; then how many of them were critical"
+        "Worst and median of the runs; then how many of them were critical"
         + (f". {NO_RATES} " if subject.findings else f", with Wilson's interval ({CONFIDENCE_WORDS}). ")
-        + "TET and TIT: per hour driven, with the interval from resampling whole trials. Definitions, with "
+        + "TET and TIT: per hour driven, with the interval from resampling whole runs. Definitions, with "
         "sources: docs/reference/failures.md. SUMO's drivers avoid collisions by construction: compare runs with "
         "each other."
     )
-    heads = "Measure", "Worst", "Median or rate", "Critical trials, or interval"
+    heads = "Measure", "Worst", "Median or rate", "Critical runs, or interval"
     return Section(
         "measures",
         "Surrogate measures",
@@ -228,7 +228,7 @@ def _per_hour(pairs: Sequence[tuple[float, float]]) -> tuple[float | None, str]:
         return None, ""
     value = float(table[:, 0].sum() / table[:, 1].sum())
     if len(table) < LEAST_CLUSTERS:
-        return value, f"too few trials for an interval ({len(table)})"
+        return value, f"too few runs for an interval ({len(table)})"
     rng = np.random.default_rng(0)
     drawn = table[rng.integers(len(table), size=(DRAWS, len(table)))].sum(axis=1)
     low, high = np.percentile(drawn[:, 0] / drawn[:, 1], [50 * (1 - CONFIDENCE), 50 * (1 + CONFIDENCE)])

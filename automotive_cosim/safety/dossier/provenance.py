@@ -39,7 +39,7 @@ def provenance(subject: Subject) -> Section:
         Table(
             "hashes", "Files", ("File", "SHA-256"), files,
             "Of all traces: of the lines that sha256sum prints for them, by name. automotive-cosim replay "
-            "repeats a trial bit for bit; automotive-cosim publish verify checks a folder.", heads=2,
+            "repeats a run bit for bit; automotive-cosim publish verify checks a folder.", heads=2,
         ),
     )  # fmt: skip
     return Section("versions", "Versions and hashes", tables=tables)
@@ -54,7 +54,7 @@ def limits(subject: Subject) -> Section:
         "construction, react to alerts by a model, and do not misuse the system as people do.",
         "What is right in an event follows from verified rules of the place and from cited figures; rules that "
         "are not verified require nothing. What no kind of event describes is not judged.",
-        f"{counted(errors, 'trial')} ended in an infrastructure error, and "
+        f"{counted(errors, 'run')} ended in an infrastructure error, and "
         f"{len(subject.results.coverage.not_run)} of the plan were not run; neither counts in any figure.",
     ]
     if unwatched:

@@ -186,7 +186,7 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     ranked = [each for each in labels if each.agent not in NOT_RANKED] or list(labels)
     chosen = [each for each in labels if each.agent == agent] if agent else ranked
     if not chosen:
-        raise UserError(f"{folder} has no trial of agent {agent!r}; give one of {', '.join(_agents(labels))}")
+        raise UserError(f"{folder} has no run of agent {agent!r}; give one of {', '.join(_agents(labels))}")
     if len({each.agent for each in chosen}) > 1:
         raise UserError(f"{folder} has several agents; give --agent with one of {', '.join(_agents(labels))}")
     mine = tuple(row for row in every if contestant(row) in chosen)
@@ -198,7 +198,7 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     models = ", ".join(sorted({each.base_model for each in chosen} - {"none"}))
     made = Subject(results, f"{name}, {models}" if models else name, name, mine, findings, reference)
     if not made.judged:
-        raise UserError(f"{folder} has no judged trial of {name} yet; rerun its command to resume")
+        raise UserError(f"{folder} has no judged run of {name} yet; rerun its command to resume")
     return made
 
 
@@ -207,7 +207,7 @@ def _recorded(folder: Path) -> Results:
     told = read_trial(folder)
     row = told.get("row") or {}
     if not row:
-        raise UserError(f"{folder} has a trial that is not over; report it once it is")
+        raise UserError(f"{folder} has a run that is not over; report it once it is")
     drives = (from_json(DriveTrialRow, row),) if "family" in row else ()
     rows = () if drives else (from_json(EpisodeRow, row),)
     return Results(folder, {"starts": [], **(told.get("manifest") or {})}, rows, Coverage(1, 0), drives)

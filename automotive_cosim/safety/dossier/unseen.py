@@ -46,8 +46,8 @@ def unseen(subject: Subject) -> Section:
     if subject.findings is not None:
         found = subject.findings
         told.append(
-            "Trials of a search are drawn to failures, so that rates of its trials say nothing about the space; "
-            "its bounds are over the points alone that represent the whole space."
+            "Runs of a search are drawn to failures, so that rates of its runs say nothing about the space; "
+            "its bounds are over the combinations alone that represent the whole space."
         )
         for name, key in (
             ("Failure rate in the space searched", "failure_rate_upper"),
@@ -90,7 +90,7 @@ def unseen(subject: Subject) -> Section:
         tuple(lines),
         "Units: drives of one family and seed, or episodes of one task, count once, if something was due in "
         "them. Kinds: a place with a kind of "
-        "event, or a task's half in a place. All bounds are for trials drawn as these were, not for the road.",
+        "event, or a task's half in a place. All bounds are for runs drawn as these were, not for the road.",
         heads=3,
     )  # fmt: skip
     return Section("unseen", "What was not shown", tuple(told), (table,))
@@ -99,7 +99,7 @@ def unseen(subject: Subject) -> Section:
 def exposure_told(subject: Subject) -> str:
     """How much was driven, and in how much of it something was due."""
     km = sum(cell.kilometres for row in subject.judged for cell in row.exposure)
-    driven = f"{subject.hours:.2f} h and {km:.0f} km were driven in {counted(len(subject.judged), 'trial')}"
+    driven = f"{subject.hours:.2f} h and {km:.0f} km were driven in {counted(len(subject.judged), 'run')}"
     due = len(subject.due)
     return f"{driven}; something was due in {due or 'none'} of them" + ("." if due else ", so nothing is shown.")
 
@@ -109,12 +109,13 @@ def residual(subject: Subject) -> str:
     bad, total, upper = failing(subject)
     if subject.findings is not None:
         bound = subject.findings["failure_rate_upper"]
-        where = "of the space searched, where something is due"
+        where = "of the space searched, where something is due,"
     else:
-        bound, where = (upper if total else None), f"of such situations ({bad} of {counted(total, 'unit')} did)"
+        bound, where = (upper if total else None), "of such situations"
     if bound is None or bound >= 1:
         return "No bound on failures follows: too little was due."
-    return f"Up to {percent(bound)} {where}, may fail ({CONFIDENCE_WORDS})."
+    did = "" if subject.findings is not None else f"; {bad} of {counted(total, 'unit')} did"
+    return f"Up to {percent(bound)} {where} may fail ({CONFIDENCE_WORDS}){did}."
 
 
 def _rates(subject: Subject) -> Iterator[tuple[str, str, str]]:
@@ -153,11 +154,11 @@ def areas(subject: Subject) -> Section:
     lines = (
         (
             "1: known, not hazardous",
-            f"{counted(passed, 'trial')} that passed"
-            + (f"; {counted(empty, 'more trial')} in which nothing was due" if empty else ""),
+            f"{counted(passed, 'run')} that passed"
+            + (f"; {counted(empty, 'more run')} in which nothing was due" if empty else ""),
             "Events, Operational domain covered",
         ),
-        ("2: known, hazardous", f"{counted(len(failures), 'trial')} that failed{minimal}", "Failures"),
+        ("2: known, hazardous", f"{counted(len(failures), 'run')} that failed{minimal}", "Failures"),
         (
             "3: unknown, hazardous",
             "not known"
@@ -168,12 +169,11 @@ def areas(subject: Subject) -> Section:
         (
             "4: unknown, not hazardous",
             "the rest of the domain",
-            "Operational domain covered: values without a trial",
+            "Operational domain covered: values without a run",
         ),
     )
     note = (
-        "Areas of ISO 21448 (SOTIF). Hazardous stands for a failed trial: harm depends on the driver and "
-        "the traffic."
+        "Areas of ISO 21448 (SOTIF). Hazardous stands for a failed run: harm depends on the driver and the traffic."
     )
     table = Table("areas", "Areas", ("Area", "In this run", "Section"), lines, note, heads=3)
     return Section("areas", "Known and unknown, hazardous and not", tables=(table,))

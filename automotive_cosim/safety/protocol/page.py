@@ -1,4 +1,4 @@
-"""The page: what the trials show for each row, what they do not, and the points that the calculator gives."""
+"""The page: what the cases show for each row, what they do not, and the points that the calculator gives."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, evidence,
 from automotive_cosim.safety.protocol.told import LimitTold, limits_told
 
 FOLDER = "protocol"
-NO_RATING = "This is evidence about an agent, from trials in simulation. It is never a rating of a car."
+NO_RATING = "This is evidence about an agent, from cases in simulation. It is never a rating of a car."
 COUNTS = (
-    "A trial is an episode of a task, or an event of a drive in which something was due or looked as if it were. "
-    "A row holds if all its trials succeeded; in brackets, the 95 % interval of their share (Wilson), which takes "
-    "trials as independent."
+    "A case is an episode of a task, or an event of a drive in which something was due or looked as if it were. "
+    "A row holds if all its cases succeeded; in brackets, the 95 % interval of their share (Wilson), which takes "
+    "cases as independent."
 )
 BRACKET = (
-    "The calculator is run twice: with what no trial showed taken as failed, and as passed. General requirements "
-    "are taken as met in both. In a limit's row, a country holds if all its trials succeeded. Hazards count as "
+    "The calculator is run twice: with what no case showed taken as failed, and as passed. General requirements "
+    "are taken as met in both. In a limit's row, a country holds if all its cases succeeded. Hazards count as "
     "heard by one channel, the cloud's."
 )
 
@@ -37,13 +37,13 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
     Args:
         folder: of ``eval`` or ``search``.
         name: of the protocol.
-        agent: whose trials; empty if there is only one.
+        agent: whose cases; empty if there is only one.
 
     Returns:
         The page, and why there are no points; empty if there are.
 
     Raises:
-        UserError: there is no such protocol, or no judged trial, or the folder cannot be written.
+        UserError: there is no such protocol, or no judged case, or the folder cannot be written.
     """
     made, subject = protocol(name), read_subject(folder, agent)
     drives, asked = limits_told(subject)
@@ -55,10 +55,10 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
     except SetupError as error:
         unscored = str(error)
     tables = [_part(part, found, scores) for part in PARTS]
-    trials = Table(
+    cases = Table(
         "trials",
-        "Trials",
-        ("Row", "Country", "Trial", "Outcome"),
+        "Cases",
+        ("Row", "Country", "Case", "Outcome"),
         tuple(
             (each.row.scored or each.row.name, trial.country or "?", trial.id, "success" if trial.ok else "failure")
             for each in found
@@ -70,10 +70,10 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
     target = folder / FOLDER
     try:
         with drafted(make_folder(folder, FOLDER) / f"{name}.html") as page:
-            for table in (*tables, told, trials):
+            for table in (*tables, told, cases):
                 write_whole(target / f"{table.name}.csv", table.csv())
             tried = sum(bool(each.trials) for each in found)
-            sentence = f"{subject.label}: trials for {tried} of {counted(len(found), 'row')}"
+            sentence = f"{subject.label}: cases for {tried} of {counted(len(found), 'row')}"
             page.write(
                 render(
                     "safety/protocol/protocol.html",
@@ -84,7 +84,7 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
                     tables=tables,
                     told=told if told.rows else None,
                     shares=[(each.trial, f"{each.share:.0%}") for each in drives],
-                    trials=trials,
+                    cases=cases,
                 ).encode()
             )
     except OSError as error:
@@ -107,7 +107,7 @@ def _part(part: str, found: Sequence[Evidence], scores: tuple[Scores, Scores]) -
         runs = len({trial.id for trial in each.trials})
         figures = map(str, (runs, count, ok))
         rows.append((each.row.name, lacks, ", ".join(countries), *figures, share_told(ok, count), told))
-    columns = ("Row", "Not shown", "By country", "Runs", "Trials", "Succeeded", "% (95 %)", "Points")
+    columns = ("Row", "Not shown", "By country", "Runs", "Cases", "Succeeded", "% (95 %)", "Points")
     together = _points(categories, scores)
     return Table(part, title, columns, tuple(rows), f"Together {together} points." if together else "", heads=3)
 
@@ -140,7 +140,7 @@ def _told(limits: Sequence[LimitTold]) -> Table:
         )
         for each in limits
     )
-    columns = ("Trial", "Country", "At s", "Limit km/h", "Told km/h", "Off km/h", "After s", "After m")
+    columns = ("Case", "Country", "At s", "Limit km/h", "Told km/h", "Off km/h", "After s", "After m")
     note = (
         "On a drive, from where a limit begins to hold, by sign or verified law; on a task, from the hand-over. "
         "Told is the first speed then; the last two columns are those of the first right one."

@@ -1,13 +1,13 @@
 // Two evaluations, or two agents of one, side by side: instance by instance, and two episodes step by step.
 
-import { ask, counted, h, outcome, plain, seconds } from "./dom.js";
+import { ask, counted, h, modelName, outcome, plain, seconds } from "./dom.js";
 import { RoadRecord, RoadView } from "./road.js";
 
 const MOST = 400;
-const label = (row) => [row.agent, row.model !== "none" && row.model, ...row.conditions].filter(Boolean).join(", ");
+const label = (row) => [row.agent, row.model !== "none" && modelName(row.model), ...row.conditions].filter(Boolean).join(", ");
 const instance = (row) => [row.task, row.half, row.scenario, row.seed, row.repeat].join(" ");
 const won = (row) => (row?.success === true ? "won" : row?.success === false ? "lost" : row ? "error" : "not run");
-const CHANGES = { "": "all instances", differs: "different outcome", better: "only the second won", worse: "only the first won", both: "both won", neither: "neither won" };
+const CHANGES = { "": "all episodes", differs: "different outcome", better: "only the second won", worse: "only the first won", both: "both won", neither: "neither won" };
 
 function change(one, other) {
   const [a, b] = [won(one), won(other)];
@@ -21,7 +21,7 @@ export async function comparePage(query, first, second) {
     const wanted = query.get(index ? "b" : "a") ?? labels[first === second ? Math.min(index, labels.length - 1) : 0];
     return h("select", { "aria-label": index ? "Second agent" : "First agent" }, labels.map((name) => h("option", { value: name, selected: name === wanted }, name)));
   });
-  const which = h("select", { "aria-label": "Which instances" }, Object.entries(CHANGES).map(([value, words]) => h("option", { value, selected: value === query.get("show") }, words)));
+  const which = h("select", { "aria-label": "Which episodes" }, Object.entries(CHANGES).map(([value, words]) => h("option", { value, selected: value === query.get("show") }, words)));
   const modules = [...new Set(runs.flatMap((run) => run.rows.map((row) => row.module)))].sort();
   const module = h("select", { "aria-label": "Module" }, h("option", { value: "" }, "Module: all"), modules.map((name) => h("option", { value: name, selected: name === query.get("module") }, name)));
   const search = h("input", { type: "search", "aria-label": "Search for a task", placeholder: "Search tasks", value: query.get("q") ?? "" });
@@ -38,7 +38,7 @@ export async function comparePage(query, first, second) {
       && (!module.value || (one ?? other).module === module.value) && (one ?? other).task.includes(search.value.toLowerCase()));
     heads.forEach((each, index) => { each.textContent = first === second ? sides[index].value : `${runs[index].name}: ${sides[index].value}`; });
     const tally = (name) => all.filter(([one, other]) => change(one, other)[name]).length;
-    count.textContent = `${counted(all.length, "instance")}: both won ${tally("both")}, only the first ${tally("worse")}, only the second ${tally("better")}, neither ${tally("neither")}. ${kept.length} shown${kept.length > MOST ? `, the first ${MOST}` : ""}.`;
+    count.textContent = `${counted(all.length, "episode")}: both won ${tally("both")}, only the first ${tally("worse")}, only the second ${tally("better")}, neither ${tally("neither")}. ${kept.length} shown${kept.length > MOST ? `, the first ${MOST}` : ""}.`;
     body.replaceChildren(...kept.slice(0, MOST).map(([one, other]) => {
       const row = one ?? other;
       const step = one?.has_trace && other?.has_trace ? h("a", { href: `#/beside/${first}/${encodeURIComponent(one.id)}/${second}/${encodeURIComponent(other.id)}` }, "step by step") : null;
@@ -64,7 +64,7 @@ export async function comparePage(query, first, second) {
   return {
     title: `${runs[0].name} and ${runs[1].name}`,
     content: [h("h1", {}, first === second ? `${runs[0].name}: two agents` : `${runs[0].name} and ${runs[1].name}`), h("div", { class: "filters" }, sides, which, module, search), count,
-      h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Instances" }, h("table", {}, h("thead", {}, h("tr", {}, head)), body))],
+      h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), body))],
     ready: fill,
   };
 }
@@ -115,7 +115,7 @@ function side(run, steps, base, jump) {
   const said = h("p", { class: "muted" });
   const parts = Object.entries(run.verdict?.parts ?? {}).filter(([, part]) => !part.ok).map(([name, part]) => `${run.parts[name] ?? plain(name)}: ${part.why}`);
   return {
-    element: h("section", {}, h("h2", {}, [run.agent, run.model !== "none" && run.model, ...(run.conditions ?? [])].filter(Boolean).join(" · "), " ", outcome(run)),
+    element: h("section", {}, h("h2", {}, [run.agent, run.model !== "none" && modelName(run.model), ...(run.conditions ?? [])].filter(Boolean).join(" · "), " ", outcome(run)),
       h("div", { class: "card stage-one" }, h("div", { class: "frame" }, screen, empty)), said, h("div", { class: "card" }, list),
       parts.length ? h("p", { class: "muted" }, parts.join("; ")) : null),
     show(at) {

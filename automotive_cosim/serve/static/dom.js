@@ -23,6 +23,12 @@ export function svg(tag, properties = {}, ...children) {
 
 export const plain = (name) => String(name ?? "").replaceAll("_", " ");
 
+// The model's name as people read it: without prices, which change nothing that it does.
+export function modelName(model) {
+  const [name, options = ""] = model.split("?");
+  return [name, ...options.split("&").filter((each) => each && !each.startsWith("usd_per_"))].join(", ");
+}
+
 export const counted = (count, name) => `${count} ${name}${count === 1 ? "" : "s"}`;
 
 export function seconds(value) {

@@ -22,7 +22,7 @@ export async function livePage(query, id) {
       if (next && (!shown || shown.isOver())) await show(next);
       if (gone) return;
       if (!running) status.replaceChildren("The study is not running. ", h("a", { href: `#/decisions/${id}` }, "See its decisions"));
-      else status.textContent = shown?.isOver() ?? true ? "Waiting for the next drive: the traffic is warming up, or futures are being driven to their ends." : `Showing drive ${drive}; the next one starts when it ends.`;
+      else status.textContent = shown?.isOver() ?? true ? "Waiting for the next drive: the traffic is warming up, or routes are being driven to their ends." : `Showing drive ${drive}; the next one starts when it ends.`;
     } catch (error) {
       status.textContent = `${error.message} Trying again.`;
     }

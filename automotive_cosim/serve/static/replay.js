@@ -1,6 +1,6 @@
 // One recorded episode, or one that is running: screen, road, steps and verdict on one time cursor.
 
-import { ask, counted, h, outcome, plain, seconds, speedInWords } from "./dom.js";
+import { ask, counted, h, modelName, outcome, plain, seconds, speedInWords } from "./dom.js";
 import { RoadRecord, RoadView, signals } from "./road.js";
 import { speedPlot } from "./plot.js";
 
@@ -63,7 +63,7 @@ export async function replayPage(query, id, episode) {
   const step = () => steps.findLastIndex((each) => each.at_s <= at + 1e-6);
 
   function head() {
-    const told = [run.of_study && h("a", { href: `#/decisions/${id}` }, run.name), run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && run.model, run.seed !== null && `seed ${run.seed}`];
+    const told = [run.of_study && h("a", { href: `#/decisions/${id}` }, run.name), run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && modelName(run.model), run.seed !== null && `seed ${run.seed}`];
     heading.replaceChildren(
       h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).flatMap((each, index) => (index ? [" · ", each] : [each])))),
       run.of_study ? h("span", { class: running ? "pill live" : "pill quiet" }, running ? "Running" : "Ended")

@@ -1,6 +1,6 @@
 // The list of records, and the table of an evaluation's episodes.
 
-import { ask, counted, h, outcome, plain, seconds } from "./dom.js";
+import { ask, counted, h, modelName, outcome, plain, seconds } from "./dom.js";
 
 const EVERY_MS = 3000;
 
@@ -17,7 +17,7 @@ export async function runsPage() {
   return { title: "Runs", content: [h("h1", {}, "Runs"), note, list], leave: () => clearInterval(timer) };
 }
 
-const WHOLE = { evaluation: ["results", "Evaluation", "episode"], drives: ["results", "Evaluation of drives", "drive"], study: ["decisions", "Study", "drive"] };
+const WHOLE = { evaluation: ["results", "Evaluation", "episode"], drives: ["results", "Evaluation of drives", "drive"], study: ["decisions", "Study"] };
 
 function line(record, records) {
   if (record.kind === "unreadable") {
@@ -25,8 +25,8 @@ function line(record, records) {
       h("span", { class: "pill bad" }, "Unreadable"));
   }
   if (WHOLE[record.kind]) {
-    const [page, whole, unit] = WHOLE[record.kind];
-    const label = record.is_search ? "Search" : whole;
+    const [page, whole, unit = record.unit] = WHOLE[record.kind];
+    const label = record.is_search ? "Search" : record.seeds ? `${whole} of ${counted(record.seeds, "seed")}` : whole;
     const done = record.planned ? `${record.done} of ${counted(record.planned, unit)}` : counted(record.done, unit);
     return h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/${page}/${record.id}` }, record.name), h("p", { class: "muted" }, `${label} · ${done} · ${when(record.started)}`)),
@@ -34,7 +34,7 @@ function line(record, records) {
         : record.is_search && !record.running ? h("a", { class: "pill quiet", href: findings(record.id) }, "Findings")
         : h("span", { class: record.running ? "pill live" : "pill quiet" }, record.running ? "Running" : "Results"));
   }
-  const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && record.model, record.seed !== null && `seed ${record.seed}`, ...(record.conditions ?? []), when(record.started)];
+  const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && modelName(record.model), record.seed !== null && `seed ${record.seed}`, ...(record.conditions ?? []), when(record.started)];
   return h("li", { class: "card" },
     h("div", {}, h("a", { href: `#/run/${record.id}` }, record.task), " ",
       records.some((each) => each.id === record.beside) && h("a", { class: "pill quiet", href: `#/beside/${record.id}/${record.beside}` }, "Beside the same without its place"),
@@ -44,11 +44,11 @@ function line(record, records) {
 }
 
 const findings = (id) => `/api/evaluations/${id}/search.html`;
-const searched = (results) => results.is_search ? h("p", {}, "These are the trials of a search. ", h("a", { href: findings(results.id) }, "What it found")) : "";
+const searched = (results) => results.is_search ? h("p", {}, "These are the runs of a search. ", h("a", { href: findings(results.id) }, "What it found")) : "";
 
 const when = (text) => (text ? text.slice(0, 16).replace("T", " ") : "");
 
-const FILTERS = [["agent", "Agent"], ["scenario", "Scenario"], ["module", "Module"], ["half", "Half"], ["missing", "Failed part"], ["outcome", "Outcome"]];
+const FILTERS = [["agent", "Agent"], ["scenario", "Scenario"], ["module", "Module"], ["missing", "Failed part"], ["outcome", "Outcome"]];
 const MOST = 400;
 
 export async function resultsPage(query, id) {
@@ -79,7 +79,7 @@ export async function resultsPage(query, id) {
     const won = judged.filter((row) => row.success).length;
     count.textContent = `${counted(kept.length, "episode")}, ${won} of ${judged.length} judged succeeded`
       + (kept.length > MOST ? `; the first ${MOST} are listed` : "");
-    table.replaceChildren(...kept.slice(0, MOST).map((row) => episode(id, row)));
+    table.replaceChildren(...inPairs(kept.slice(0, MOST)).map((rows) => episodes(id, rows)));
     heading.textContent = results.planned ? `${results.rows.length} of ${results.planned} episodes done` : counted(results.rows.length, "episode");
     now.replaceChildren(...(results.running.length ? ["Running now: ", ...results.running.flatMap((one) => [h("a", { href: `#/run/${id}/${encodeURIComponent(one)}` }, one), " "])] : []));
     const parameters = new URLSearchParams();
@@ -102,7 +102,7 @@ export async function resultsPage(query, id) {
   const others = records.filter((record) => record.kind === "evaluation");
   const beside = h("select", { "aria-label": "Compare with", onchange: () => { if (beside.value) location.hash = `#/compare/${id}/${beside.value}`; } },
     h("option", { value: "" }, "Compare with …"), others.map((record) => h("option", { value: record.id }, record.id === id ? "itself: two of its agents" : record.name)));
-  const head = ["Task", "Half", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Failed parts"].map((name) => h("th", { scope: "col" }, name));
+  const head = ["Task", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Failed parts"].map((name) => h("th", { scope: "col" }, name));
   return {
     title: results.name,
     content: [h("h1", {}, results.name), searched(results), heading, now, h("div", { class: "filters" }, search, choices, beside), count,
@@ -117,7 +117,7 @@ function drivesTable(id, rows) {
   const head = ["Drive", "Seed", "Agent", "Score", "Events met", "Nuisances", "Steps", ""].map((name) => h("th", { scope: "col" }, name));
   const figure = (value) => (value === null ? "" : String(Math.round(value)));
   return h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Drives" }, h("table", {}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows.map((row) => h("tr", {},
-    h("td", {}, row.has_road ? h("a", { href: `#/run/${id}/${encodeURIComponent(row.id)}` }, row.family) : row.family), h("td", {}, `${row.seed}${row.repeat ? ` · ${row.repeat + 1}` : ""}`), h("td", {}, [row.agent, row.model !== "none" && row.model, ...row.conditions].filter(Boolean).join(", ")),
+    h("td", {}, row.has_road ? h("a", { href: `#/run/${id}/${encodeURIComponent(row.id)}` }, row.name) : row.name), h("td", {}, `${row.seed}${row.repeat ? ` · ${row.repeat + 1}` : ""}`), h("td", {}, [row.agent, row.model !== "none" && modelName(row.model), ...row.conditions].filter(Boolean).join(", ")),
     h("td", {}, figure(row.value)), h("td", {}, row.events === null ? "" : `${row.met} of ${row.events}`), h("td", {}, figure(row.nuisances)), h("td", {}, String(row.steps)), h("td", { class: "muted" }, row.error ? `${row.error_kind}: ${row.error}` : plain(row.end)))))));
 }
 
@@ -126,11 +126,25 @@ function drivesPage(id, results) {
   return { title: results.name, content: [h("h1", {}, results.name), searched(results), h("p", { class: "muted" }, done), drivesTable(id, results.rows)] };
 }
 
-function episode(id, row) {
-  const name = row.has_trace ? h("a", { href: `#/run/${id}/${encodeURIComponent(row.id)}` }, row.task) : row.task;
-  const agent = row.model === "none" || row.model === "rules" ? row.agent : `${row.agent} (${row.model})`;
-  const why = row.error ? h("span", { class: "muted" }, `${row.error_kind}: ${row.error}`) : row.missing.map(plain).join(", ");
-  return h("tr", {}, h("td", {}, name), h("td", {}, row.half), h("td", {}, row.scenario),
+// The halves of a pair stand in one row, first before second.
+function inPairs(rows) {
+  const found = new Map();
+  for (const row of rows) {
+    const key = [row.task, row.agent, row.model, row.seed, row.repeat, ...row.conditions].join(" ");
+    found.set(key, [...(found.get(key) ?? []), row].sort((one, other) => (one.half < other.half ? -1 : 1)));
+  }
+  return [...found.values()];
+}
+
+function episodes(id, rows) {
+  const [row] = rows;
+  const each = (told) => rows.flatMap((one, index) => [index ? " · " : "", told(one)]);
+  const agent = row.model === "none" || row.model === "rules" ? row.agent : `${row.agent} (${modelName(row.model)})`;
+  const named = (one) => (row.pair ? `${one.half} ` : "");
+  const why = (one) => (one.error ? `${one.error_kind}: ${one.error}` : one.missing.map(plain).join(", "));
+  const shown = (one) => (one.has_trace ? h("a", { href: `#/run/${id}/${encodeURIComponent(one.id)}` }, named(one), outcome(one)) : h("span", {}, named(one), outcome(one)));
+  return h("tr", {}, h("td", {}, row.task), h("td", {}, [...new Set(rows.map((one) => one.scenario))].join(" · ")),
     h("td", {}, [agent, ...row.conditions].join(", ")), h("td", {}, String(row.seed)),
-    h("td", { title: seconds(row.sim_seconds) }, String(row.steps)), h("td", {}, outcome(row)), h("td", {}, why));
+    h("td", { title: rows.map((one) => seconds(one.sim_seconds)).join(" · ") }, rows.map((one) => one.steps).join(" · ")),
+    h("td", {}, each(shown)), h("td", { class: "muted" }, rows.map((one) => why(one) && named(one) + why(one)).filter(Boolean).join(" · ")));
 }

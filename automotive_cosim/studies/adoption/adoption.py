@@ -18,7 +18,7 @@ import numpy as np
 
 from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import ActionType, Reroute
+from automotive_cosim.contracts import ActionType, Json, Reroute
 from automotive_cosim.cosim.simulation import couple
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.fleet import Fleet
@@ -27,7 +27,7 @@ from automotive_cosim.episode.specification import SCREEN, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UserError
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import Job, alone
-from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.wording import KINDS, read_line
@@ -342,6 +342,17 @@ class AdoptionStudy(StudyContent[AdoptionPlan, AdoptionRow]):
 
     plan_type = AdoptionPlan
     row_type = AdoptionRow
+    line_is = "seed, share and group of cars"
+
+    def lines(self) -> Iterator[Json]:
+        """Equipped cars, others and all of every share."""
+        for row in self.rows:
+            for each in row.shares:
+                about = {"scenario": row.scenario, "seed": row.seed, "share": each.share}
+                for group in ("equipped", "others", "all"):
+                    cohort: Cohort | None = getattr(each, group)
+                    if cohort is not None:
+                        yield about | {"cars_of": group, **columns(cohort)}
 
     def of(self, share: float) -> Iterator[tuple[int, ShareOutcome]]:
         """The outcomes of a share, with their seeds."""

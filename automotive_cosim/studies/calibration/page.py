@@ -48,6 +48,7 @@ def write_page(folder: Path) -> Path:
     text = render(
         "studies/calibration/calibration.html",
         found=found,
+        sentence=sentence(found),
         met=found.met(held_out=False),
         findings=list(findings(found)),
         tables=tables,
@@ -61,6 +62,16 @@ def write_page(folder: Path) -> Path:
     except OSError as error:
         raise cannot_write(folder, error) from error
     return page
+
+
+def sentence(found: Calibration) -> str:
+    """What the calibration came to, in a sentence."""
+    told = []
+    for name, held_out in (("calibrated", False), ("held out", True)):
+        before, after = (found.met(held_out=held_out, unfitted=unfitted) for unfitted in (True, False))
+        if after.count:
+            told.append(f"{after.good} of {after.count} {name} hourly counts (before: {before.good})")
+    return f"The calibrated demand of {found.source} meets {' and '.join(told)}, within a GEH of {GOOD_GEH:g}."
 
 
 def findings(found: Calibration) -> Iterator[str]:

@@ -21,7 +21,11 @@ if TYPE_CHECKING:
 S = TypeVar("S", bound="StudyContent[Any, Any]")
 
 
-@takes(CongestionSettings, but=("redraw", "step_s"))
+IN_PYTHON = ("redraw", "step_s")
+"""What only a plan of one's own sets."""
+
+
+@takes(CongestionSettings, but=IN_PYTHON)
 @takes(ExecutorSettings)
 def congestion(
     out: StudyFolder = None,
@@ -66,7 +70,7 @@ def days(
     _run(plan, DAYS, DaysStudy, shown, "shares and seeds", out, settings, as_json=as_json)
 
 
-@takes(AdoptionSettings, but=("emissions",))
+@takes(AdoptionSettings, but=("emissions", *IN_PYTHON))
 @takes(ExecutorSettings)
 def adoption(
     out: StudyFolder = None,

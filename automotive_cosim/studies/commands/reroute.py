@@ -60,7 +60,7 @@ def reroute(
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
-    """Fork the running traffic at every decision to reroute and drive both futures.
+    """Fork the running traffic at every decision to reroute and drive both routes.
 
     Rerun the command to resume a stopped study.
     """
@@ -121,10 +121,12 @@ def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor) -> No
 
 def _tell_all(console: Console, studies: Sequence[Study], *, as_json: bool) -> None:
     """Prints the table of several studies; raises if drives ended in an error."""
-    from automotive_cosim.studies.reroute.suite import networks, write_networks
+    from automotive_cosim.studies.reroute.suite import networks, sentence, write_networks
 
     table, out = networks(studies), studies[0].folder.parent
-    page = write_networks(table, out)
+    told = sentence(studies)
+    page = write_networks(table, out, told)
+    console.print(told, soft_wrap=True)
     console.print(table.markdown(), soft_wrap=True)
     console.print(f"{page} written; every study has its own report beside it", soft_wrap=True)
     if as_json:

@@ -51,10 +51,14 @@ def charts(study: CongestionStudy) -> dict[str, Chart]:
         "map": ("Time lost on the road without a measure", lost_map(study, network, 0, WIDE_IN)),
     }
     narrow = {"map": lost_map(study, network, 0, NARROW_IN)}
-    shown = [each for each in all_measures(study) if each[0] == strongest(study)] if study.plan.measures else []
-    for number, name in shown:
-        made["map_change"] = f"Change of the time lost with “{name}”", lost_map(study, network, number, WIDE_IN)
-        narrow["map_change"] = lost_map(study, network, number, NARROW_IN)
+    measures = sorted(
+        (each for each in all_measures(study) if each[0]), key=lambda each: each[0] != strongest(study)
+    )
+    shown = measures[:1]
+    for number, name in measures:
+        key = "map_change" if (number, name) in shown else f"map_change_{number}"
+        made[key] = f"Change of the time lost with “{name}”", lost_map(study, network, number, WIDE_IN)
+        narrow[key] = lost_map(study, network, number, NARROW_IN)
     made["mfd"] = "Macroscopic fundamental diagram of the network", _fundamental(study, network)
     for number, name in (*named[:1], *shown):
         title = f"Time-space diagram of “{study.plan.along.name}”" + (f" with “{name}”" if number else "")

@@ -80,7 +80,7 @@ def answer(study: CongestionStudy) -> str:
         kilometres = "; as many kilometres are driven"
     return (
         f"“{name_of(best)}”{of} {_told(added, 'saves' if not away else 'leaves out')} of delay{share}{kilometres}, "
-        f"{over}{f'; {away}' if away else ''}."
+        f"against no measure, {over}{f'; {away}' if away else ''}."
     )
 
 

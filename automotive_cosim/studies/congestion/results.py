@@ -19,6 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
+from automotive_cosim.contracts import Json
 from automotive_cosim.studies.congestion.outputs import EDGES, read_edges
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S, CongestionPlan
 from automotive_cosim.studies.congestion.rows import CongestionRow, EdgeRow, FlowCell, FlowSums, MeasureOutcome
@@ -37,6 +38,29 @@ class CongestionStudy(StudyContent[CongestionPlan, CongestionRow]):
 
     plan_type = CongestionPlan
     row_type = CongestionRow
+    line_is = "seed and measure"
+
+    def lines(self) -> Iterator[Json]:
+        """Every seed without a measure, and with each."""
+        plan = self.plan
+        for row in self.rows:
+            for outcome in row.outcomes:
+                flow = flow_in(plan, outcome)
+                yield {
+                    "scenario": row.scenario,
+                    "seed": row.seed,
+                    "measure": outcome.measure or None,
+                    "delay_vehicle_h_per_h": delay_h(plan, outcome),
+                    "driven_km": flow.distance_m / 1000,
+                    "time_h": flow.time_s / HOUR_S,
+                    "lost_h": flow.lost_s / HOUR_S,
+                    "waited_h": waited_s(plan, outcome) / HOUR_S,
+                    "arrived_per_h": throughput_per_h(plan, outcome),
+                    "co2_g": sum(each.co2_g for each in outcome.emitted),
+                    "cut_short": outcome.cut_short,
+                    "kept_in": outcome.kept_in,
+                    "gridlock": outcome.gridlock or None,
+                }
 
     @property
     def measures(self) -> tuple[str, ...]:

@@ -23,11 +23,12 @@ from zlib import crc32
 import numpy as np
 
 from automotive_cosim.agents.guest import FAULTS, aside, own_class, told
+from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import Job, alone
-from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.run.stage import doing
 from automotive_cosim.scenarios import Scenario, variant
 from automotive_cosim.studies.content import StudyContent
@@ -384,6 +385,13 @@ class DaysStudy(StudyContent[DaysPlan, DaysRow]):
 
     plan_type = DaysPlan
     row_type = DaysRow
+    line_is = "seed, share of advised drivers and day"
+
+    def lines(self) -> Iterator[Json]:
+        """Every day of every share, of the user equilibrium and of the system optimum."""
+        for row in self.rows:
+            about = {"scenario": row.scenario, "seed": row.seed, "drivers": row.drivers, "share": row.share}
+            yield from (about | {"day": day, **columns(each)} for day, each in enumerate(row.days))
 
     def of(self, drivers: Drivers) -> tuple[DaysRow, ...]:
         """The rows of a share or state."""

@@ -73,7 +73,7 @@ def bounds(study: Study) -> Table:
     )
     note = (
         "Exclusion depends on the outcome, so it could favour a policy. Decisions that are excluded although "
-        "the ego arrived in every future are included as measured; those in which it did not arrive get the worst "
+        "the ego arrived on every route are included as measured; those in which it did not arrive get the worst "
         "loss and the best gain of all others. Figures measured in a gridlock say little by themselves."
     )
     return Table("bounds", "With the excluded decisions included", columns, tuple(rows), note, heads=3)

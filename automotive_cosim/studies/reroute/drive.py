@@ -170,7 +170,7 @@ class _Drive:
             part = done / total if total else 1.0
             if part >= self._settled:
                 self._settled, amount = part, f"{done:.0f} of {total:.0f} vehicles arrived"
-                doing("driving every future to its end", amount, share=DECIDING + (1 - DECIDING) * part)
+                doing("driving every route to its end", amount, share=DECIDING + (1 - DECIDING) * part)
 
         return ended(traffic, tell)
 
@@ -236,7 +236,7 @@ class _Drive:
             if not begun:
                 self.looks += 1
                 return False
-            what = f"driving the futures of decision {len(self.points) + 1}"
+            what = f"driving the routes of decision {len(self.points) + 1}"
             self._tell(what)
             replicates = futures.replicates(begun, group, lambda part: self._tell(what, part))
             offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)

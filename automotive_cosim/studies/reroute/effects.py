@@ -175,8 +175,8 @@ def closed(study: Study) -> Table:
             ]
             rows.append((f"{share:.0%}", str(len(kept)), str(len(points) - len(kept)), *cells))
     note = (
-        "At the first decision of each drive with another route, a road is closed in both futures (--close), and "
-        "each is compared with the same future with it open. Cars with that road on their route make a detour. "
+        "At the first decision of each drive with another route, a road is closed on both routes (--close), and "
+        "each is compared with the same route with it open. Cars with that road on their route make a detour. "
         "Others: if the ego keeps its route; later: by 1 s or more."
     )
     return Table("closed", "When a road is closed at the fork", columns, tuple(rows), note)
@@ -275,8 +275,8 @@ def horizons(study: Study) -> Table:
     )
     note = (
         "Seconds that all others together save up to the instant at which the given share has arrived in the "
-        f"faster future, over the decisions where the policy reroutes. The futures end at {study.plan.arrived:.0%} "
-        "(arrived), or later, with the ego's arrival: “Others save” in “Other effects” counts up to then, and "
+        f"faster way, over the decisions where the policy reroutes. Each is driven until {study.plan.arrived:.0%} "
+        "(arrived) and the ego have arrived: “Others save” in “Other effects” counts up to then, and "
         "over all decisions."
     )
     return Table("horizons", "The others, by horizon", columns, tuple(rows), note, heads=3)
@@ -315,7 +315,7 @@ def fleet(study: Study) -> Table:
         "Noise saved, s",
     )
     note = (
-        "Sums over the vehicles of the class that arrived in both futures, per decision in which the policy "
+        "Sums over the vehicles of the class that arrived with either route, per decision in which the policy "
         "reroutes. Classes are those that the demand's vehicle types declare (emissionClass), else SUMO's own for "
         "the kind of vehicle; ego_class of the plan declares the ego's. Noise is sound energy at the vehicles "
         "(Harmonoise), as seconds of a car at 50 km/h, 65 dB(A)."

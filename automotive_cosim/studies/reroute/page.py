@@ -98,7 +98,7 @@ def answer(study: Study) -> str:
     if len(shares) == 1:
         told += _parts(shares[0][2])
     count, seeds = sum(each.count for each in gains), max(each.seeds for each in gains)
-    over = f"over {counted(count, 'decision')} of {counted(seeds, 'seed')}"
+    over = f"against keeping the route, over {counted(count, 'decision')} of {counted(seeds, 'seed')}"
     is_bounded = all(each.interval is not None for each in gains)
     noise_s = study.noise().time_s
     if not is_bounded and all(abs(each.value) <= noise_s for each in gains):

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import fmean, stdev
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from automotive_cosim.errors import SetupError, install_hint
+from automotive_cosim.contracts import Json
 from automotive_cosim.run.row import columns
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.reroute.plan import StudyPlan
@@ -26,9 +24,6 @@ from automotive_cosim.studies.reroute.rows import (
     TripRow,
 )
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 NOISE = 0.95
 """The noise floor is this quantile of the differences caused by chance alone."""
 
@@ -39,6 +34,11 @@ class Study(StudyContent[StudyPlan, TripRow]):
 
     plan_type = StudyPlan
     row_type = TripRow
+    line_is = "decision, policy, age of the news and compliance"
+
+    def lines(self) -> Iterator[Json]:
+        """The choices of every policy at every decision."""
+        return (columns(choice) for choice in self.all_choices)
 
     @property
     def planned(self) -> int:
@@ -97,20 +97,6 @@ class Noise:
     def is_known(self) -> bool:
         """Whether any placebo moved anything; if none did, nothing tells a gain from chance."""
         return self.placebos > 0 and (self.time_s > 0 or self.others_s > 0)
-
-
-def load_study(folder: Path | str) -> pd.DataFrame:
-    """The choices of every policy at every decision as a data frame, one row per choice.
-
-    Raises:
-        UserError: it is not a study's folder, or is damaged.
-        SetupError: pandas is not installed.
-    """
-    try:
-        import pandas as pd
-    except ImportError as error:
-        raise SetupError(f"load_study requires pandas: {install_hint('reports')}") from error
-    return pd.DataFrame([columns(choice) for choice in Study.read(Path(folder)).all_choices])
 
 
 def all_decisions(rows: Iterable[TripRow]) -> Iterator[DecisionPoint]:

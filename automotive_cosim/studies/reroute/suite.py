@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from statistics import fmean
 
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.reroute.demand import read_demand
@@ -77,13 +78,27 @@ def networks(studies: Sequence[Study]) -> Table:
     return Table("networks", "The same study on several networks", columns, tuple(rows), note, heads=3)
 
 
-def write_networks(table: Table, folder: Path) -> Path:
-    """Writes the table as Markdown, CSV and LaTeX; returns the first.
+def sentence(studies: Sequence[Study]) -> str:
+    """What rerouting always gains on each network, in a sentence."""
+    told = []
+    for study in studies:
+        gains_s = [
+            time_saved_s(each)
+            for each in study.choices
+            if each.policy == "always" and each.age_s == study.plan.ages_s[0]
+        ]
+        gain = f"{fmean(gains_s):+.0f} s".replace("-", "−") if gains_s else "nothing known"
+        told.append(f"{study.plan.opened.name} {gain} ({counted(len(gains_s), 'decision')})")
+    return f"Saved by “always”, a decision, against keeping the route: {', '.join(told)}."
+
+
+def write_networks(table: Table, folder: Path, told: str) -> Path:
+    """Writes the table as Markdown, below a sentence, CSV and LaTeX; returns the first.
 
     Raises:
         OSError: it cannot be written.
     """
-    for suffix, text in (("csv", table.csv()), ("tex", table.latex()), ("md", table.markdown())):
+    for suffix, text in (("csv", table.csv()), ("tex", table.latex()), ("md", f"{told}\n\n{table.markdown()}")):
         write_whole(folder / f"{table.name}.{suffix}", text)
     return folder / f"{table.name}.md"
 

@@ -103,7 +103,7 @@ def _how_judged(study: Study, floor: Noise) -> str:
     if study.plan.replicates == 1:
         return (
             f"Won and lost exclude differences within the noise floor of {floor.time_s:.1f} s. Regret: time lost "
-            "compared with the best future. Each future was driven once, so best and regret include luck: add "
+            "compared with the best route. Each route was driven once, so best and regret include luck: add "
             "--replicates."
         )
     draws = [point.decision.draws for point in study.decisions]
@@ -111,7 +111,7 @@ def _how_judged(study: Study, floor: Noise) -> str:
     fixed = 1 + study.plan.draws.start
     added = f" Means are over the first {fixed}." if study.plan.replicates == "auto" else ""
     return (
-        f"Each future was driven {times} times.{added} Best, better and "
+        f"Each route was driven {times} times.{added} Best, better and "
         "regret are cross-fitted: the other draws choose and each draw scores, so regret may be negative. A draw "
         "is won or lost if the mean of the others has the same sign; the counts are sums of such shares."
     )
@@ -190,7 +190,7 @@ def costs(study: Study) -> Table:
     note = (
         "Means over decisions; negative values are costs. CO2 and fuel by SUMO's emission model. Others: "
         "the sum over every vehicle on the road or due at the decision, departure delay included, until the "
-        f"ego and {study.plan.arrived:.0%} of them had arrived in one of the two futures; the rest counts up to "
+        f"ego and {study.plan.arrived:.0%} of them had arrived with one of the two routes; the rest counts up to "
         "that instant. Unfinished: the number of the latter, if the ego keeps its route / as the policy chooses."
     )
     return Table("costs", "Other effects", columns, tuple(rows), note, heads=3)
@@ -311,11 +311,11 @@ def noise_floor(study: Study) -> Table:
     if floor.placebos:
         rows = ((_what_is_fresh(study), str(floor.placebos), f"{floor.time_s:.1f}", f"{floor.others_s:.1f}"),)
     note = (
-        f"{NOISE:.0%} of the futures in which the ego also keeps its route, with fresh random numbers, differ from "
-        "the drive itself by no more than this. Where each future was driven once, a smaller difference of the "
+        f"{NOISE:.0%} of the drives in which the ego also keeps its route, with fresh random numbers, differ from "
+        "the drive itself by no more than this. Where each route was driven once, a smaller difference of the "
         "ego's time is a tie."
     )
-    columns = ("Placebo", "Futures", "Ego's time, s", "Others' time, s")
+    columns = ("Placebo", "Drives", "Ego's time, s", "Others' time, s")
     return Table("noise", "Noise floor", columns, rows, note)
 
 

@@ -131,7 +131,7 @@ def understated_chance(study: Study) -> Iterator[str]:
     """The futures differ by less than chance."""
     if any(row.fresh is Fresh.JITTER for row in study.rows):
         yield (
-            "SUMO could not be reseeded here: the futures differ by a small change of every other car's speed, "
+            "SUMO could not be reseeded here: the routes differ by a small change of every other car's speed, "
             "which understates chance."
         )
 
