@@ -28,7 +28,7 @@ from automotive_cosim.agents.written import written
 from automotive_cosim.contracts import UNCALLED, Action, Json, Observation
 from automotive_cosim.errors import ActionError
 from automotive_cosim.formats.words import shown
-from automotive_cosim.interface.functions import Function, action_of, offered
+from automotive_cosim.interface.functions import Function, action_of, grouped, offered
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, ToolCall
 
@@ -45,8 +45,8 @@ NO_CALL = (
 
 
 def tools(settings: AgentSettings) -> tuple[Function, ...]:
-    """The functions that it may call under these conditions."""
-    return offered(settings.conditions.interface, settings.conditions.geo)
+    """The functions that it may call under these conditions, those of the car as one (``grouped``)."""
+    return grouped(offered(settings.conditions.interface, settings.conditions.geo))
 
 
 class Caller:
@@ -64,7 +64,8 @@ class Caller:
         wanted = AgentProfile(self.name, ALL, frozenset(UNCALLED), reflects=False)
         self._profile = wanted.under(settings)
         self._asking = Asking(chat_model, settings)
-        self._known = {function.name: function.parameters for function in tools(settings)}
+        every = (*offered(settings.conditions.interface, settings.conditions.geo), *tools(settings))
+        self._known = {function.name: function.parameters for function in every}
         self.stages = self._asking.stages
         self.reset("")
 
@@ -85,6 +86,7 @@ class Caller:
         self._told: list[tuple[ChatMessage, list[ChatMessage]]] = []
         self._left: deque[ToolCall] = deque()
         self._waiting: ToolCall | None = None
+        self._is_told = False
         self._count = 0
 
     def act(self, observation: Observation) -> Action:
@@ -96,6 +98,7 @@ class Caller:
             ModelError: the model does not answer.
         """
         self.stages.clear()
+        self._is_told = self._waiting is not None
         if self._waiting is not None:
             answer = ChatMessage("tool", prompt.result(observation), call_id=self._waiting.id)
             self._told[-1][1].append(answer)
@@ -152,7 +155,8 @@ class Caller:
                 yield replace(result, text=f"{result.text}\n\n{now}") if is_last else result
 
     def _situation(self, seen: Observation, pictures: bool) -> str:
-        return prompt.situation(self._profile, seen, pictures=pictures)
+        """What is so now; the result of a call stands at the call."""
+        return prompt.situation(self._profile, seen, pictures=pictures, is_resulting=not self._is_told)
 
 
 def heard(reply: ModelReply, schemas: Mapping[str, Json], count: int = 0) -> ChatMessage:

@@ -1,6 +1,6 @@
 """Agents that use a model: T3A, M3A and ASURADA, one cycle over different inputs.
 
-reflect on the last action -> remember -> perceive -> interpret -> plan -> act
+reflect on an action that failed -> remember -> perceive -> interpret -> plan -> act
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.agents.thoughts import spoken
 from automotive_cosim.cockpit.actions import schema_of
-from automotive_cosim.contracts import Action, ActionType, Observation
+from automotive_cosim.contracts import Action, FeedbackCode, Observation
 from automotive_cosim.contracts.given import PromptLength
 from automotive_cosim.errors import ActionError, UserError
 from automotive_cosim.interface.observe import Channel, See
@@ -24,6 +24,8 @@ from automotive_cosim.models.base import ChatModel
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
 """Characters of its own text that it carries over to the next turn."""
+WENT_WELL = frozenset({FeedbackCode.NONE, FeedbackCode.OK, FeedbackCode.READ_OUT})
+"""Results that teach nothing: the next picture shows what came of the act."""
 DRIVE_HISTORY, SHORT_HISTORY = 20, 6
 """Lines of history in a watch, which lasts for hundreds of turns, and in a short prompt."""
 
@@ -39,7 +41,7 @@ class _Turn:
 
 
 class ModelAgent:
-    """Asks its model twice per turn: about the result of the last action, and what to do now.
+    """Asks its model what to do now and, after an action that failed, what follows from that.
 
     ``stages`` records the last turn.
     """
@@ -134,8 +136,8 @@ class ModelAgent:
         self._asking.note(StageName.REMEMBER, observation, "\n".join(self._recalled) or "nothing of this place")
 
     def _look_back(self, last: _Turn, now: Observation) -> None:
-        has_waited = now.on_watch and last.action is not None and last.action.action_type is ActionType.WAIT
-        lesson = self._reflect(last, now) if self._profile.reflects and not has_waited else ""
+        has_failed = now.feedback.code not in WENT_WELL
+        lesson = self._reflect(last, now) if self._profile.reflects and has_failed else ""
         done = prompt.action_words(last.action, last.seen)
         number = len(self._history) + 1
         line = prompt.step(number, last.action, last.seen, now, lesson)

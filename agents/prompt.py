@@ -74,6 +74,7 @@ def turn(
             "hands": _HANDS[profile.interface],
             "grammar": _grammar(profile, by_point=not is_listed, on_watch=observation.on_watch),
             "policy": observation.policy,
+            "thresholds": "" if profile.order.tells_thresholds else None,
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
@@ -99,11 +100,19 @@ def _file(profile: AgentProfile, observation: Observation) -> str:
     return profile.length
 
 
-def situation(profile: AgentProfile, observation: Observation, *, pictures: bool, is_spoken: bool = True) -> str:
+def situation(
+    profile: AgentProfile,
+    observation: Observation,
+    *,
+    pictures: bool,
+    is_spoken: bool = True,
+    is_resulting: bool = True,
+) -> str:
     """The situation alone, for an agent whose protocol carries the rest: the functions and what was called.
 
     Args:
         is_spoken: whether it has what the driver said.
+        is_resulting: whether it has the last result; without it, the time that has passed alone.
     """
     given = profile.channels
     is_listed = Channel.ELEMENTS in given
@@ -111,7 +120,8 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
         "caller_now",
         {
             "goal": driver_words(observation) if is_spoken else None,
-            "feedback": _timed_result(observation),
+            "feedback": _timed_result(observation) if is_resulting else None,
+            "passed": None if is_resulting else passed(observation),
             "elements": prompt_parts.told(observation.elements or ()) if is_listed else None,
             "pictures": _pictured(PICTURE, observation) if pictures else None,
             "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,

@@ -8,7 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from automotive_cosim.contracts import BY_HAND, UNCALLED, ActionType
-from automotive_cosim.contracts.given import Interface, PromptLength
+from automotive_cosim.contracts.given import Interface, Order, PromptLength
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.functions import LIGHT, Function, offered
@@ -90,6 +90,8 @@ class AgentProfile:
     """Whether it can remember what worked from one episode to the next."""
     interface: Interface = Interface.TOUCH
     """How it acts."""
+    order: Order = Order.PLAIN
+    """What the driver of a drive asks for."""
 
     @property
     def functions(self) -> tuple[Function, ...]:
@@ -123,6 +125,7 @@ class AgentProfile:
             reflects=self.reflects and AgentPart.REFLECTION not in without,
             remembers=self.remembers and AgentPart.MEMORY not in without and settings.memory is not None,
             interface=interface,
+            order=settings.conditions.order,
         )
 
 

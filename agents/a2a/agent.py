@@ -125,7 +125,7 @@ class A2AAgent:
 
     def _ask(self, seen: Observation) -> Action | None:
         """Asks for the next answer; returns what its words alone do."""
-        now = self._situation(seen)
+        now = self._situation(seen, is_resulting=self._is_new or not self._asked)
         self._note(StageName.PERCEIVE, seen, now)
         if self._is_new:
             system = f"{self._told(seen)}\n\n{self._situation(seen, is_spoken=False)}"
@@ -204,8 +204,8 @@ class A2AAgent:
         except (AgentError, OutOfBudgetError) as error:
             self._note(StageName.REFLECT, seen, str(error))
 
-    def _situation(self, seen: Observation, *, is_spoken: bool = True) -> str:
-        return prompt.situation(self._profile, seen, pictures=False, is_spoken=is_spoken)
+    def _situation(self, seen: Observation, *, is_spoken: bool = True, is_resulting: bool = True) -> str:
+        return prompt.situation(self._profile, seen, pictures=False, is_spoken=is_spoken, is_resulting=is_resulting)
 
     def _told(self, seen: Observation) -> str:
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self._profile.channels else ""

@@ -51,7 +51,14 @@ PURIFIER_M3_H = 60.0
 EVAPORATOR_C = 4.0
 """Air leaves the evaporator saturated at this; the compressor stays off in frost."""
 COMPRESSOR_MINIMUM_C = 0.0
-SUPPLY_MAXIMUM_C = 55.0
+COOLANT_C = 85.0
+"""Of the heater's water: thermostats of cars open at 82 to 90 °C, electric heaters hold about as much."""
+HEATER_NTU_FULL = 1.05
+"""Size of the heater's heat exchanger in transfer units at full fan, where it warms the air by two thirds of the
+way to its water. It grows with the root of the slowness: air that lingers gets hotter (Kays and London 1984,
+Compact Heat Exchangers, one fluid of constant temperature)."""
+HEATER_W = 7_000.0
+"""What a car's heater gives at most: high-voltage heaters are sold for 5 to 7 kW."""
 DEFROST_SUPPLY_C = 45.0
 SUPPLY_GAIN = 10.0
 """Supply air deviates this many times as much as the cabin, in the other direction, from what would hold it."""
@@ -300,7 +307,7 @@ class Cabin:
         wanted = _holding_c(controls, outside, blown, leak) + SUPPLY_GAIN * (controls.set_c - self.temperature_c)
         if controls.front_defroster:
             wanted = max(wanted, DEFROST_SUPPLY_C)
-        return _Supply(max(taken_c, min(wanted, SUPPLY_MAXIMUM_C)), ratio, controls.fan_pct)
+        return _Supply(max(taken_c, min(wanted, hottest_c(taken_c, blown))), ratio, controls.fan_pct)
 
     def _pane(
         self, pane: Pane, dt_s: float, outside: Air, wind: float, jet: _Supply | None, heater_w_m2: float
@@ -357,9 +364,25 @@ def parked_c(cabin_c: float, minutes: float, controls: Controls, outside: Air, s
     if blown:
         chills = controls.air_conditioning and outside.temperature_c > COMPRESSOR_MINIMUM_C
         coldest_c = EVAPORATOR_C if chills else outside.temperature_c
-        coolest, warmest = ((gained_w + blown * c) / (lost + blown) for c in (coldest_c, SUPPLY_MAXIMUM_C))
+        coolest, warmest = (
+            (gained_w + blown * c) / (lost + blown)
+            for c in (coldest_c, hottest_c(outside.temperature_c, BLOWER_FULL))
+        )
         settled_c = min(max(controls.set_c, coolest), max(warmest, coolest))
     return settled_c + (cabin_c - settled_c) * math.exp(-minutes * 60 * (lost + blown) / CABIN_CAPACITY)
+
+
+def hottest_c(taken_c: float, blown: float) -> float:
+    """Temperature of air that the heater warms as far as it can.
+
+    Args:
+        taken_c: temperature of the air before it.
+        blown: air flow, kg/s; 0 for none.
+    """
+    if not blown:
+        return taken_c
+    share = 1 - math.exp(-HEATER_NTU_FULL * math.sqrt(BLOWER_FULL / blown))
+    return taken_c + min(share * max(0.0, COOLANT_C - taken_c), HEATER_W / (blown * AIR_CP))
 
 
 def _holding_c(controls: Controls, outside: Air, blown: float, leak: float) -> float:

@@ -11,12 +11,12 @@ from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.app import App, Where
 from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.equipment import equipped
-from automotive_cosim.cockpit.functions import CarFunction, as_told, groups, of_signals, reading, unknown
+from automotive_cosim.cockpit.functions import CarFunction, as_told, groups, named, of_signals, reading, unknown
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.messages import Pick, Show
 from automotive_cosim.cockpit.registry import apps, pages
 from automotive_cosim.cockpit.signals import CATALOGUE, HMI, MOTION
-from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.widgets import Rows, Screen
 from automotive_cosim.contracts import Feedback, FeedbackCode
 from automotive_cosim.contracts.text import say
@@ -58,14 +58,32 @@ def read_screen(
     twin = state.copy()
     Show(screen).perform(twin)
     if item:
-        choices = (widget for child in equipped(twin, pages()[screen].made(twin)) for widget in child.walk())
-        tabs = (
-            each.on_tap
-            for each in choices
-            if isinstance(each.on_tap, Pick) and item in (each.text, each.on_tap.value)
-        )
-        (next(tabs, None) or Show(screen, item)).perform(twin)
+        ways = _ways(twin, screen)
+        found = next((way for each in ways if (name := named(item, each)) and (way := each[name])), None)
+        has_tabs = any(isinstance(way, Pick) for way in ways[1].values())
+        if found is not None or not has_tabs:
+            (found or Show(screen, item)).perform(twin)
+        if (found is None and has_tabs) or _is_gone(twin):
+            return unknown(f"item of {screen}", item, [name for each in ways for name in each])
     return as_told("\n".join(dict.fromkeys(_lines(twin))))
+
+
+def _ways(state: State, screen: str) -> tuple[dict[str, Message], dict[str, Message]]:
+    """What leads to a part or an item of a screen, by how it is listed, and by its own name: tabs, and rows of its
+    app's screens."""
+    texts, names = dict[str, Message](), dict[str, Message]()
+    for page in _by_screen()[screen].pages:
+        for widget in (widget for child in equipped(state, pages()[page].made(state)) for widget in child.walk()):
+            match widget.on_tap:
+                case Pick(_, name) as way if page == screen:
+                    texts[widget.text], names[name] = way, way
+                case Show(to, name) as way if to == screen and name:
+                    texts[widget.text], names[name] = way, way
+    return texts, names
+
+
+def _is_gone(state: State) -> bool:
+    return any(widget.key == f"{state.screen}.gone" for widget in pages()[state.screen].made(state))
 
 
 def _lines(state: State) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""The car from above: body, glass with its fog, and the light of its lamps."""
+"""The car from above: body, glass with its fog, the light of its lamps, and an arrow where it heads."""
 
 from __future__ import annotations
 
@@ -48,6 +48,8 @@ def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int
 
     _body(ImageDraw.Draw(fine), place, round(unit * _FINE), (windshield, rear_window), night)
     _lamps(ImageDraw.Draw(fine), place, lamps, night)
+    ahead = place([(-16, -HALF_LENGTH - 14), (0, -HALF_LENGTH - 28), (16, -HALF_LENGTH - 14)])
+    ImageDraw.Draw(fine).line(ahead, (NIGHT if night else DAY).muted, round(5 * unit * _FINE), joint="curve")
     return fine.reduce(_FINE)
 
 

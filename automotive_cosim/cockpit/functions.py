@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from dataclasses import fields as dataclass_fields
@@ -76,6 +77,23 @@ UNITS: Mapping[str, str] = {
     "mm": "millimetres",
 }
 """VSS's units, where they are no word."""
+DIRECTIONS: Mapping[str, str] = {
+    "Window.Position": "0 is shut",
+    "Sunroof.Position": "0 is shut",
+    "Shade.Position": "0 is open",
+    "Side.Position": "0 is foremost",
+    "Height": "0 is lowest",
+    "Recline": "0 is upright",
+    "HeatingCooling": "below 0 ventilates",
+    "Pan": "above 0 is to the left",
+    "Tilt": "above 0 is up",
+    "Balance": "above 0 is right",
+    "Fader": "above 0 is front",
+    "Volume": "0 is silent",
+    "Intensity": "0 is off",
+    "Driver.FanSpeed": "0 is off",
+}
+"""Which way a number counts, by the end of its path."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -307,7 +325,7 @@ def _kinds(numbers: Mapping[str, Signal[Any]]) -> Iterator[tuple[str, Mapping[st
 def _one(verb: str, group: str, what: str, value: str, ones: Mapping[str, Signal[Any]]) -> CarFunction:
     """A function that commands one of some actuators; ``which`` says which, unless there is only one."""
     signals = tuple(ones.values())
-    schema = _value_schema(signals)
+    schema = _value_schema(ones)
     if len(ones) == 1:
         (only,) = ones
         name = f"{verb}_{group}_{what or only}"
@@ -343,18 +361,23 @@ def _leaf(signal: Signal[Any]) -> str:
     return f"{signal.path}{values}{held}."
 
 
-def _value_schema(signals: tuple[Signal[Any], ...]) -> Json:
+def _value_schema(ones: Mapping[str, Signal[Any]]) -> Json:
     """The values that any of the actuators can have; which has less is told in the description of the function."""
+    signals = tuple(ones.values())
     first = signals[0]
     if isinstance(first.default, bool):
-        return {"type": "boolean"}
+        return {"type": "boolean", "description": "Whether it is to be on."}
     if first.allowed:
-        return {"type": "string", "enum": list(dict.fromkeys(each for one in signals for each in one.allowed))}
+        values = list(dict.fromkeys(each for one in signals for each in one.allowed))
+        return {"type": "string", "enum": values, "description": "What it is to be; each has its own values."}
+    ways = {name: way for name, one in ones.items() for end, way in DIRECTIONS.items() if one.path.endswith(end)}
+    same = len(ways) == len(ones) and len({*ways.values()}) == 1
+    told = [*dict.fromkeys(ways.values())] if same else [f"{name}: {way}" for name, way in ways.items()]
     return {
         "type": "number",
         "minimum": min(one.low for one in signals),
         "maximum": max(one.high for one in signals),
-        "description": f"In {first.unit}; the car's own steps are of {first.step:g}.",
+        "description": "; ".join([f"In {first.unit}", *told, f"the car's own steps are of {first.step:g}."]),
     }
 
 
@@ -399,12 +422,22 @@ def _unknown(what: str, name: str, known: tuple[str, ...]) -> Feedback:
 
 
 def named(name: str, known: Iterable[str]) -> str | None:
-    """The name as it is spelled, whatever the case; None if it is not there."""
-    names = list(known)
+    """The name as it is spelled, whatever the case, or the only one that has all its words; None if there is none.
+
+    As who speaks may leave out a surname or a street's kind, so may a call, where one thing alone can be meant.
+    """
+    names = list(dict.fromkeys(known))
     if name in names:
         return name
-    wanted = " ".join(name.casefold().split())
-    return next((each for each in names if each.casefold() == wanted), None)
+    wanted = name.casefold().split()
+    whole = next((each for each in names if each.casefold().split() == wanted), None)
+    if whole is not None or not wanted:
+        return whole
+    found = [each for each in names if set(wanted) <= set(_WORD.findall(each.casefold()))]
+    return found[0] if len(found) == 1 else None
+
+
+_WORD = re.compile(r"\w+")
 
 
 CLOCK = "Time of day, as HH:MM."

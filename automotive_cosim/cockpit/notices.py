@@ -41,6 +41,7 @@ def lit(state: State) -> tuple[Telltale, ...]:
         Telltale.CABLE: signals[ENERGY.CABLE],
         Telltale.HIGH_BEAM: signals[LIGHTS.HIGH_BEAM],
         Telltale.LOW_BEAM: signals[LIGHTS.LOW_BEAM] and not signals[LIGHTS.HIGH_BEAM],
+        Telltale.POSITION: signals[LIGHTS.POSITION] and not (signals[LIGHTS.LOW_BEAM] or signals[LIGHTS.HIGH_BEAM]),
         Telltale.FRONT_FOG: signals[LIGHTS.FRONT_FOG],
         Telltale.REAR_FOG: signals[LIGHTS.REAR_FOG],
     }
@@ -59,6 +60,7 @@ NAMES: Mapping[Telltale, str] = {
     Telltale.CABLE: say("Charging cable"),
     Telltale.HIGH_BEAM: say("High beam"),
     Telltale.LOW_BEAM: say("Low beam"),
+    Telltale.POSITION: say("Position lamps"),
     Telltale.FRONT_FOG: say("Front fog"),
     Telltale.REAR_FOG: say("Rear fog"),
 }

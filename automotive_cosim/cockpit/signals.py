@@ -272,7 +272,7 @@ class CABIN:
 
 
 class MIRROR:
-    """Outside mirrors. Pan 100 is outwards, tilt 100 upwards."""
+    """Outside mirrors. Pan counts to the left, tilt upwards (VSS)."""
 
     DRIVER_FOLDED = _switch("Body.Mirrors.DriverSide.IsFolded")
     PASSENGER_FOLDED = _switch("Body.Mirrors.PassengerSide.IsFolded")

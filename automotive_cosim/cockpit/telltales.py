@@ -35,6 +35,7 @@ class Telltale(StrEnum):
     CABLE = "cable"
     HIGH_BEAM = "high_beam"
     LOW_BEAM = "low_beam"
+    POSITION = "position"
     FRONT_FOG = "front_fog"
     REAR_FOG = "rear_fog"
 
@@ -128,6 +129,16 @@ def _low_beam(pen: _SymbolPen) -> None:
         pen.line((2, y + 3), (10, y))
 
 
+def _position(pen: _SymbolPen) -> None:
+    """Two lamps back to back, as those at the corners shine."""
+    for lamp, ends in ((9.5, (1.5, 5.0)), (14.5, (22.5, 19.0))):
+        pen.line((lamp, 8), (lamp, 16))
+        for y in (8.0, 12.0, 16.0):
+            pen.line((ends[0], y + (y - 12) / 2), (ends[1], y), width=1.5)
+    pen.arc(5.5, 8, 13.5, 16, 90, 270)
+    pen.arc(10.5, 8, 18.5, 16, -90, 90)
+
+
 def _front_fog(pen: _SymbolPen) -> None:
     _lamp(pen)
     for y in (7.0, 11.0, 15.0):
@@ -217,6 +228,7 @@ _DRAWN: dict[Telltale, tuple[Colour, Callable[[_SymbolPen], None]]] = {
     Telltale.CABLE: (AMBER, _cable),
     Telltale.HIGH_BEAM: (BLUE, _high_beam),
     Telltale.LOW_BEAM: (GREEN, _low_beam),
+    Telltale.POSITION: (GREEN, _position),
     Telltale.FRONT_FOG: (GREEN, _front_fog),
     Telltale.REAR_FOG: (AMBER, _rear_fog),
 }

@@ -127,6 +127,22 @@ OWN_PROMPT = r"^.+\.(md|txt)@[0-9a-f]{64}$"
 """A file with instructions of one's own, and its SHA-256."""
 
 
+class Order(StrEnum):
+    """What the driver of a drive asks for, from a sentence to every threshold."""
+
+    PLAIN = "plain"
+    """To be kept safe and legal, and to be let drive."""
+    USUAL = "usual"
+    """What to see to, what to leave, and to be told nothing twice within a minute."""
+    FULL = "full"
+    """The same, and when each of the things that can be due is due, by figures."""
+
+    @property
+    def tells_thresholds(self) -> bool:
+        """Whether its reader knows from which measure on something counts."""
+        return self is Order.FULL
+
+
 class PromptLength(StrEnum):
     """How much of the same facts the prompt of T3A, M3A and ASURADA spells out.
 

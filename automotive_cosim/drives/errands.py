@@ -94,6 +94,20 @@ WORDS: Mapping[Language, ErrandWords] = {
 }
 
 
+THANKS: Mapping[Language, str] = {
+    Language.ENGLISH: "Thanks, that's done: “{words}”",
+    Language.FRENCH: "Merci, c'est fait : « {words} »",
+    Language.GERMAN: "Danke, das ist erledigt: „{words}“",
+    Language.JAPANESE: "ありがとう、済んだよ：「{words}」",
+}
+"""What is said once it is carried out, so that nobody does it again whenever the words are read."""
+
+
+def thanks(errand: Errand, language: Language) -> str:
+    """What is said once it is done."""
+    return THANKS[language].format(words=said(errand, language))
+
+
 def said(errand: Errand, language: Language) -> str:
     """What is said; with the driver's no, if it is declined."""
     words = WORDS[language]

@@ -10,17 +10,21 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import partial
 from math import ceil
 from typing import Any
 
 from automotive_cosim.contracts import AlertKind
+from automotive_cosim.contracts.given import Order
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import DriveAct, EventKind
+from automotive_cosim.drives.events.base import DriveAct, EventKind, Measured
 from automotive_cosim.drives.events.tracker import DriveEvent
 
 REPEAT_S = 60.0
 """An alert about the same event, or the same alert while nothing is due, is a nuisance within this time, unless it
 has become worse, or it advises a clearly lower speed: fog thickens, and the driver follows the one told before."""
+NAGGING_S = 15.0
+"""The same for who was told of no minute: whoever says a thing again sooner than this nags."""
 WORSE = 1.25
 """Ratio of severities from which an event has become worse, and of the speeds advised."""
 HOLD_S = 120.0
@@ -235,6 +239,7 @@ def judge(
     at_start: Mapping[str, Any] | None = None,
     untouched: Sequence[DriveEvent] = (),
     hold_s: float = HOLD_S,
+    order: Order = Order.FULL,
 ) -> Judgement:
     """What became of events, and what acts were.
 
@@ -248,13 +253,17 @@ def judge(
         at_start: the signals at departure; to set one back is no nuisance.
         untouched: the events of the do-nothing run from departure, so that nobody gains by avoiding events.
         hold_s: for how long a request holds the car back.
+        order: what the driver said. Who was told no thresholds is not charged for what a measure alone speaks
+            against, and who was told of no minute may say a thing again after ``NAGGING_S``.
     """
     cases = [
         _Case(event, kinds[event.kind], due_anyway.get(index), event.done_s) for index, event in enumerate(events)
     ]
     for case in cases:
         case.caused = not case.event.lookalike and any(_contrary(case, act) for act in acts)
-    bench = _Bench(tuple(kinds.values()), cases, against, at_start or {}, hold_s)
+    known = known_to(order, against)
+    repeat_s = NAGGING_S if order is Order.PLAIN else REPEAT_S
+    bench = _Bench(tuple(kinds.values()), cases, known, at_start or {}, hold_s, repeat_s)
     judged = tuple(map(bench.act, acts))
     found = tuple(map(_event, cases))
     heard = [act for act, what in zip(acts, judged, strict=True) if not what.worth.is_false]
@@ -265,6 +274,17 @@ def judge(
         and not any(_heeds(act, event, kinds[event.kind]) for act in heard)
     ]
     return Judgement((*found, *_evaded(evadable, found, judged)), judged)
+
+
+def known_to(order: Order, against: Against) -> Against:
+    """The facts that count against who was given that order."""
+    return against if order.tells_thresholds else partial(_beyond_doubt, against)
+
+
+def _beyond_doubt(against: Against, kind: EventKind, time_s: float) -> str | None:
+    """The fact that speaks against a warning, unless it is one of measure."""
+    fact = against(kind, time_s)
+    return None if isinstance(fact, Measured) else fact
 
 
 def _has_passed(event: DriveEvent, kind: EventKind) -> bool:
@@ -343,6 +363,8 @@ class _Bench:
     at_start: Mapping[str, Any]
     hold_s: float
     """For how long a request holds the car back."""
+    repeat_s: float = REPEAT_S
+    """Within which time the same alert is a nuisance."""
     written: set[str] = field(default_factory=set)
     """Signals that the agent has changed."""
     alerted_s: dict[AlertKind, float] = field(default_factory=dict)
@@ -404,7 +426,7 @@ class _Bench:
         something has supported it ever since."""
         about = min(supported, key=lambda kind: len(kind.alerts)).name if supported else ""
         told_s = self.alerted_s.get(act.alert) if act.alert is not None else None
-        recent = told_s is not None and act.time_s - told_s < REPEAT_S
+        recent = told_s is not None and act.time_s - told_s < self.repeat_s
         if told_s is not None and recent and not self._is_slower(act) and self._lasts(meant, told_s, act.time_s):
             reason = f"told {act.time_s - told_s:.0f} s before"
             return JudgedAct(act.time_s, act.words, Worth.REPEAT, about, reason)
@@ -430,7 +452,7 @@ class _Bench:
                 worths.append(Worth.NEUTRAL)
             else:
                 severity = event.severity_at(act.time_s)
-                recent = case.told_s is not None and act.time_s - case.told_s < REPEAT_S
+                recent = case.told_s is not None and act.time_s - case.told_s < self.repeat_s
                 worse = severity >= WORSE * case.told_severity or self._is_slower(act)
                 again = recent and not unnamed and not worse
                 worths.append(Worth.REPEAT if again and self._lasts(meant, before_s, act.time_s) else Worth.NEUTRAL)

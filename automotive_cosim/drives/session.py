@@ -20,11 +20,12 @@ from automotive_cosim.drives.acts import acts_of, refusal, spoken
 from automotive_cosim.drives.alarm import Alarm, Noticed, noticed
 from automotive_cosim.drives.changes import FAR_S, LONGEST_S
 from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
-from automotive_cosim.drives.errands import said
+from automotive_cosim.drives.errands import said, thanks
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, Tracker
+from automotive_cosim.drives.events.errands import carried_out
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
-from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
+from automotive_cosim.drives.order import ANSWERS, ordered
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Baseline, JudgedSession, TakesTime, beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
@@ -96,6 +97,8 @@ class DriveSession(JudgedSession):
     _given: int = 0
     _asked: int = 0
     """How much of what was asked for the agent has heard."""
+    _thanked: frozenset[float] = frozenset()
+    """When the errands were asked for that somebody has said thanks for."""
 
     @classmethod
     def depart_with(
@@ -116,8 +119,8 @@ class DriveSession(JudgedSession):
         Raises:
             TrafficError: the traffic simulation failed.
         """
-        orders = ORDERS_WITH_ERRANDS if world.car.errands else STANDING_ORDERS
-        begun: dict[str, Any] = beginning(world, orders[setup.conditions.language], setup, (), observer)
+        words = ordered(setup.conditions.order, setup.conditions.language, with_errands=bool(world.car.errands))
+        begun: dict[str, Any] = beginning(world, words, setup, (), observer)
         session = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm(), judged=judged)
         session._note(world.moment)
         session._read()
@@ -191,10 +194,13 @@ class DriveSession(JudgedSession):
         return ANSWERS[self.setup.conditions.language]
 
     def _remarks(self) -> tuple[str, ...]:
-        """What people aboard have asked for since the last observation."""
-        asked = self.moments[-1].asked
+        """What people aboard have asked for since the last observation, and thanks for what is done."""
+        asked, language = self.moments[-1].asked, self.setup.conditions.language
         new, self._asked = asked[self._asked :], len(asked)
-        return tuple(said(errand, self.setup.conditions.language) for errand in new)
+        carried = carried_out(self.moments) - self._thanked if asked else frozenset[float]()
+        done = [each for each in asked if each.at_s in carried]
+        self._thanked |= {each.at_s for each in done}
+        return (*(said(each, language) for each in new), *(thanks(each, language) for each in done))
 
     def _told(self, code: FeedbackCode, text: str) -> Feedback:
         self.wakes += self._is_woken
@@ -306,5 +312,12 @@ class DriveSession(JudgedSession):
         if self._against is None:
             self._against = facts_of(self.moments)
         return judge(
-            KINDS, self.events, self.acts, self.due_anyway, self._against, self.moments[0].commands, untouched
+            KINDS,
+            self.events,
+            self.acts,
+            self.due_anyway,
+            self._against,
+            self.moments[0].commands,
+            untouched,
+            order=self.setup.conditions.order,
         )

@@ -25,6 +25,7 @@ from automotive_cosim.contracts.given import (
     GeoInput,
     Interface,
     Language,
+    Order,
     PromptLength,
     See,
     ToldPolicy,
@@ -133,6 +134,18 @@ class Conditions:
         ),
     ] = Interface.TOUCH  # fmt: skip
     """How the agent acts: on the screen (``touch``), by typed functions of the car (``functions``), or ``both``."""
+    order: Annotated[
+        Order,
+        OneOf(Order, "order"),
+        Words(
+            "Order", "{} order", "{}_order", "Success by order",
+            "What the driver of a drive asks for: in a sentence (plain), as before a drive (usual), or with every "
+            "threshold (full). Where none was told, none is charged for.",
+        ),
+    ] = Order.PLAIN  # fmt: skip
+    """What the driver of a drive asks for: in a sentence (``plain``), as before a drive (``usual``), or with every
+    threshold (``full``)."""
+
     prompt: Annotated[
         PromptLength,
         OneOf(PromptLength, "prompt", OWN_PROMPT),

@@ -6,7 +6,8 @@
     steps.jsonl     one line per step, written step by step: what a page shows, and hashes of the state for a replay
                     (steps.jsonl.gz of a drive that is over, which has hundreds)
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
-                    road_000.jpg, ...: the view through the windshield, if the agent is given it
+                    road_000.jpg, ...: the view through the windshield after each step;
+                    of a drive, if the agent is given it
     road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
 
 ``run`` adds a film and a page, and the whole state to each line of its steps; a pair is a folder with both. In the
@@ -16,6 +17,7 @@ study, drives that are watched have theirs in ``live/ID``, with neither ``trial.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 TRIAL = "trial.json"
@@ -37,6 +39,10 @@ WATCHED = "watched"
 """A file in ``LIVE`` that is locked while somebody watches."""
 
 
+PictureOf = Callable[[Path, int], Path]
+"""``road_view`` or ``screenshot``: the path of a picture from a trial's folder and the number of a step."""
+
+
 def steps_in(folder: Path) -> Path:
     """The steps of a trial."""
     packed = folder / PACKED_STEPS
@@ -44,7 +50,7 @@ def steps_in(folder: Path) -> Path:
 
 
 def road_view(folder: Path, step: int) -> Path:
-    """Path of the view through the windshield after a step, for agents that are given it."""
+    """Path of the view through the windshield after a step."""
     return folder / SCREENSHOTS / f"road_{step:03d}.jpg"
 
 

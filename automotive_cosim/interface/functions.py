@@ -10,7 +10,8 @@ A call is an action as any other: it takes the same time as a tap, is restricted
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -29,6 +30,19 @@ OF_ACTIONS = tuple(kind for kind in UNCALLED if kind not in BY_HAND and kind is 
 
 
 _OWN = frozenset(map(str, OF_ACTIONS))
+CAR = "car"
+"""The function that stands for all of the car's, where definitions are sent with each question (``grouped``)."""
+_FIELDS: Mapping[str, str] = {
+    "seconds": "In s.",
+    "speed_kmh": "In km/h.",
+    "text": "The words, or what is asked for.",
+    "kind": "What it is about.",
+    "severity": "How urgent it is.",
+    "goal_status": "How it ended.",
+    "reason": "Why it was not done.",
+    "destination": "Name of a place or street; the present one if left out.",
+}
+"""What the fields of actions say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +78,40 @@ def offered(interface: Interface = Interface.FUNCTIONS, geo: GeoInput = GeoInput
     return (*called, *map(_of_action, sorted(BY_HAND))) if interface.touches else tuple(called)
 
 
+def grouped(every: Iterable[Function]) -> tuple[Function, ...]:
+    """The same in a quarter of the characters: the car's functions as one, which lists them with what they take.
+
+    Args:
+        every: functions that are offered. The actions among them stay as they are.
+    """
+    own = {*_OWN, *map(str, BY_HAND)}
+    kept, cars = list[Function](), list[str]()
+    for each in every:
+        if each.name in own:
+            kept.append(each)
+        else:
+            is_told = not calls.functions()[each.name].signals
+            line = signature(each, is_told=is_told).removeprefix("- ").partition(". ")[0]
+            cars.append(re.sub(r": (?:text|true\|false)\b", "", line).removesuffix("."))
+    if not cars:
+        return tuple(kept)
+    listed = "\n".join(cars)
+    about = f"Call a function of the car. Brackets may be left out; on and as_stop are true or false.\n{listed}"
+    schema: Json = {
+        "type": "object",
+        "properties": {
+            "function": {"type": "string", "description": "Its name."},
+            "arguments": {
+                "type": "string",
+                "description": 'Its arguments as a JSON object, such as {"which": "driver", "celsius": 21.5}.',
+            },
+        },
+        "required": ["function"],
+        "additionalProperties": False,
+    }
+    return (*kept, Function(CAR, about, schema))
+
+
 def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Action:
     """The action that a call is.
 
@@ -73,12 +121,21 @@ def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Ac
     Raises:
         ActionError: there is no such function, or the arguments do not fit it.
     """
+    if name == CAR:
+        given = _object(name, arguments) if isinstance(arguments, str) else dict(arguments or {})
+        return action_of(str(given.get("function", "")), _inner(given.get("arguments")))
     if name not in functions() and name not in BY_HAND:
         raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim show functions")))
     given = _object(name, arguments) if isinstance(arguments, str) else dict(arguments or {})
     if "action_type" in given:
         raise ActionError(f"{name} takes no action_type; its name says it")
     return parse(action_json(name, given))
+
+
+def _inner(arguments: Any) -> str | Mapping[str, Any] | None:
+    if arguments is None or isinstance(arguments, str | Mapping):
+        return arguments
+    return json.dumps(arguments)
 
 
 def action_json(name: str, arguments: Mapping[str, Any]) -> Json:
@@ -120,13 +177,18 @@ def _of_action(kind: ActionType) -> Function:
     schema = {
         "type": "object",
         "properties": {
-            name: {"type": "string"} | field_schema(name) for name in (*target, *takes.required, *takes.optional)
+            name: {"type": "string"} | field_schema(name) | _told(name)
+            for name in (*target, *takes.required, *takes.optional)
         },
         "required": list(takes.required),
         "additionalProperties": False,
     }
     about = takes.about_bounded or takes.about
     return Function(str(kind), f"{about[0].upper()}{about[1:]}.", schema)
+
+
+def _told(field: str) -> Json:
+    return {"description": _FIELDS[field]} if field in _FIELDS else {}
 
 
 def signature(function: Function, *, is_told: bool = True) -> str:
@@ -142,7 +204,8 @@ def _values(schema: Json) -> str:
     if isinstance(choices, list):
         return "|".join(map(str, choices))
     if "minimum" in schema:
-        return f"{schema['minimum']} to {schema['maximum']}"
+        counts = str(schema.get("description", "")).split("; ")[1:-1]
+        return ", ".join([f"{schema['minimum']:g} to {schema['maximum']:g}", *counts])
     return {"string": "text", "boolean": "true|false"}.get(str(schema["type"]), str(schema["type"]))
 
 

@@ -192,7 +192,13 @@ _FRONT_FOG = r"(front fogs?\b|fog lights at the front)"
 _HIGH_BEAM = r"((high|full|main) (beam|lights)|far lights|high lights|full headlights|\bbrights\b)"
 
 SKILLS: tuple[Skill, ...] = (
-    Skill((r"^(keep watch while i drive|veille pendant que|pass auf, während ich|運転中、見張って)",), _keep_watch),
+    Skill(
+        (
+            r"^(keep watch while i drive|veille pendant que|pass auf, während ich|運転中、見張って)",
+            r"^(keep us safe and legal|fais que tout reste sûr|sorg dafür, dass alles sicher|安全と法律)",
+        ),
+        _keep_watch,
+    ),
     Skill(
         (
             rf"(still burning|leave|keep|put it out|flashed).*{_REAR_FOG}",

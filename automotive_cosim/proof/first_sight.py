@@ -237,6 +237,7 @@ _LAMPS: Mapping[Telltale, frozenset[Facet]] = {
     Telltale.CABLE: frozenset({Facet.SETTINGS}),
     Telltale.HIGH_BEAM: READINGS["is_high_beam_on"],
     Telltale.LOW_BEAM: READINGS["is_low_beam_on"],
+    Telltale.POSITION: READINGS["is_low_beam_on"],
     Telltale.FRONT_FOG: READINGS["is_front_fog_on"],
     Telltale.REAR_FOG: READINGS["is_rear_fog_on"],
 }

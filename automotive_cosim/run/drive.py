@@ -9,10 +9,11 @@ from typing import Any
 from automotive_cosim.agents import Agent
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import Order
 from automotive_cosim.drives.elsewhere import name_of
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, EventKind
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.judge import ORDER, JudgedAct, JudgedEvent, facts_of, judge
+from automotive_cosim.drives.judge import ORDER, JudgedAct, JudgedEvent, facts_of, judge, known_to
 from automotive_cosim.drives.result import figures, judged_since
 from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.session import DriveSession
@@ -125,6 +126,8 @@ class JudgedDrive(JudgeInput):
     begun_s: float
     seconds: float
     """Duration of the drive."""
+    order: Order = Order.FULL
+    """What the driver asked for; ``facts`` are those that count against who was told that."""
 
     def judgement(self) -> tuple[tuple[JudgedEvent, ...], tuple[JudgedAct, ...], Score]:
         """Events, acts and score by the current checks; their times are seconds since departure."""
@@ -137,13 +140,15 @@ class JudgedDrive(JudgeInput):
             lambda kind, time_s: facts.get((kind.name, time_s), ORDER),
             self.commands,
             self.untouched,
+            order=self.order,
         )
         return judged_since(judged, self.begun_s, self.seconds)
 
     @classmethod
     def of(cls, session: DriveSession) -> JudgedDrive:
         """The input of a drive's judgement that is over."""
-        against = facts_of(session.moments)
+        order = session.setup.conditions.order
+        against = known_to(order, facts_of(session.moments))
         times_s = sorted({act.time_s for act in session.acts})
         facts = {(kind.name, time_s): against(kind, time_s) for kind in KINDS.values() for time_s in times_s}
 
@@ -154,7 +159,7 @@ class JudgedDrive(JudgeInput):
 
         events, acts, due_anyway = tuple(session.events), tuple(session.acts), dict(session.due_anyway)
         commands, untouched = session.moments[0].commands, session.untouched
-        judge(KINDS, events, acts, due_anyway, noted, commands, untouched)  # which also asks between two alerts
+        judge(KINDS, events, acts, due_anyway, noted, commands, untouched, order=order)  # asks between alerts too
         return cls(
             events,
             acts,
@@ -164,4 +169,5 @@ class JudgedDrive(JudgeInput):
             untouched,
             session.moments[0].time_s,
             session.seconds,
+            order,
         )

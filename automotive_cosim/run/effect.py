@@ -168,7 +168,8 @@ def _watched(
     due = {number: anyway.get(key(event)) for number, event in enumerate(tracker.events)}
     done = [act for act in acts if act.time_s <= drive[-1].time_s]
     commands, untouched = session.moments[0].commands, session.untouched
-    found = judge(KINDS, tracker.events, done, due, facts_of(drive), commands, untouched)
+    order = session.setup.conditions.order
+    found = judge(KINDS, tracker.events, done, due, facts_of(drive), commands, untouched, order=order)
     since = drive[fork.at].time_s
     became = {
         event.kind.replace("_", " "): str(event.outcome)

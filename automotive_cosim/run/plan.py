@@ -16,6 +16,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, Agent, AgentSettings, is_remote, make_agent
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import Clock
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
@@ -32,7 +33,7 @@ from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.outside import check_agent
-from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
+from automotive_cosim.run.settings import ALL_SUITES, BOTH, LIVE, SUITES, EvaluationSettings
 from automotive_cosim.run.trial import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.sets import Suite
@@ -307,15 +308,19 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
 
     Args:
         asked: ids, patterns, tags and so on.
-        suite: the suite that patterns and tags select from, or ``all``; an id names its task in any, and ``core``
-            those of the core subset.
+        suite: the suite that patterns and tags select from, ``all``, or ``live`` for the pairs that hurry; an id
+            names its task in any, and ``core`` those of the core subset.
 
     Raises:
         UnknownNameError: there is no such suite, or a word selects none of its tasks.
     """
     if suite not in SUITES:
         raise UnknownNameError("suite", suite, SUITES)
-    there = [task for task in CATALOGUE.values() if suite in (ALL_SUITES, task.suite)]
+    there = [
+        task
+        for task in CATALOGUE.values()
+        if suite in (ALL_SUITES, task.suite) or (suite == LIVE and task.hurries is not None)
+    ]
     chosen: set[str] = set()
     for word in asked:
         named = {task.id for task in there if matches(task.id, word) or word in _words(task)}
@@ -381,6 +386,8 @@ def make_plan(values: Mapping[str, Any]) -> Plan:
     Raises:
         UserError: a field is unknown, missing, empty or of the wrong type.
     """
+    if values.get("suite") == LIVE:  # there, what a model needs to think passes on the road
+        values = {"clock": [str(Clock.MODEL)], **values}
     plan = checked(Plan, values, lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:
         raise UserError('the plan has no agent; give agents = ["asurada"] in the file, or --agents asurada')

@@ -52,6 +52,7 @@ from automotive_cosim.run.trial_folder import target
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import STAMPED, installed
 
+VIEW_QUALITY = 80
 PICTURE_QUALITY = 85
 LARGE = frozenset({*STATES, "weather", "gps", "connectivity", "events"})
 """What a line of a step has only if the whole state is written."""
@@ -177,7 +178,7 @@ class Recorder(TrialObserver):
                 remove(self.folder)
 
     def _add(self, shot: Shot) -> None:
-        """Saves the picture and appends a line; the picture first, so that every line has one."""
+        """Saves the pictures of screen and road, then appends a line, so that every line has them."""
         if self.folder is None or self._lines is None:
             return
         step = shot.step
@@ -185,9 +186,11 @@ class Recorder(TrialObserver):
             with drafted(screenshot(self.folder, step.number)) as file:
                 Image.fromarray(shot.screenshot).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
             self._pictured = step.number, shot.screenshot
-        if (camera := shot.session.observation.camera) is not None:
+        seen = shot.session.observation
+        if not seen.on_watch or seen.camera is not None:  # a drive has hundreds of steps
+            camera = shot.session.world.view() if seen.camera is None else seen.camera
             with drafted(road_view(self.folder, step.number)) as file:
-                Image.fromarray(camera).save(file, "JPEG", quality=PICTURE_QUALITY, subsampling=0)
+                Image.fromarray(camera).save(file, "JPEG", quality=VIEW_QUALITY)
         told, begins, waited_s = step.as_json(), "hand-over", None
         if shot.session.observation.on_watch:
             told["context"], begins = shot.session.observation.context or "", "departure"  # as the agent was told

@@ -14,7 +14,7 @@ from automotive_cosim.drives.followed import told
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED
+from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED, PictureOf, road_view, screenshot
 from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.run.attribution import path_of, read_effects
@@ -112,6 +112,7 @@ class Content:
                 {
                     "number": line["step"],
                     "has_picture": _has_picture(self.records, entry, folder, line.get("picture")),
+                    "has_view": _has_picture(self.records, entry, folder, line["step"], road_view),
                     **{name: line[name] for name in OF_A_STEP if name in line},
                     "stages": [_stage(stage) for stage in line["stages"]],
                 }
@@ -429,11 +430,13 @@ def _stage(stage: Json) -> Json:
     return {"name": stage.get("stage", stage.get("name", "")), "text": stage.get("text", ""), **spent}
 
 
-def _has_picture(records: RecordFolders, entry: RecordEntry, folder: Path, step: int | None) -> bool:
+def _has_picture(
+    records: RecordFolders, entry: RecordEntry, folder: Path, step: int | None, of: PictureOf = screenshot
+) -> bool:
     if step is None:
         return False
     try:
-        records.picture(entry, folder, step)
+        records.picture(entry, folder, step, of)
     except NotHereError:
         return False
     return True

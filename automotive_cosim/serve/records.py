@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import LIVE, PAIR, PICTURES, screenshot
+from automotive_cosim.formats.layout import LIVE, PAIR, PICTURES, PictureOf, screenshot
 from automotive_cosim.run import trial_folder
 
 DEPTH = 3
@@ -127,16 +127,17 @@ class RecordFolders:
                 return folder
         raise NotHereError(f"this record has no run {trial!r}" if trial else "this record is of no run")
 
-    def picture(self, entry: RecordEntry, folder: Path, step: int) -> Path:
-        """The screenshot of a step that changed the screen, a JPEG.
+    def picture(self, entry: RecordEntry, folder: Path, step: int, of: PictureOf = screenshot) -> Path:
+        """The screenshot of a step that changed the screen, or its view through the windshield, a JPEG.
 
         Args:
             folder: the trial's, from ``trial``.
+            of: ``screenshot`` or ``road_view`` of ``formats.layout``.
 
         Raises:
             NotHereError: there is none.
         """
-        return self.file(entry, *screenshot(folder, step).relative_to(entry.folder).parts)
+        return self.file(entry, *of(folder, step).relative_to(entry.folder).parts)
 
 
 def _seek(folder: Path, depth: int) -> Iterator[RecordEntry]:

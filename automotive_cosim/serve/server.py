@@ -33,6 +33,7 @@ from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.files import parse_json, read_bytes
+from automotive_cosim.formats.layout import road_view, screenshot
 from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
@@ -152,7 +153,7 @@ class Site:
                         {"lines": list(content.road(path["run"], path["episode"], _number(query)))}
                     ),
                 ),
-                (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
+                (rf"/api/runs/{run}{episode}/(?P<of>pictures|views)/(?P<step>\d{{1,6}})", self._picture),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
                 (rf"/api/evaluations/{run}/search\.html", lambda path, _: self._findings(path["run"])),
                 (rf"/api/studies/{run}", lambda path, _: _json(content.study(path["run"], ""))),
@@ -299,7 +300,8 @@ class Site:
     def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         records = self._content.records
         entry = records.entry(path["run"])
-        picture = records.picture(entry, records.trial(entry, path["episode"]), int(path["step"]))
+        of = road_view if path["of"] == "views" else screenshot
+        picture = records.picture(entry, records.trial(entry, path["episode"]), int(path["step"]), of)
         return WebAnswer(read_bytes(picture), "image/jpeg", 60)
 
 

@@ -19,6 +19,8 @@ from automotive_cosim.tasking.triggers import TriggerCondition
 
 NEUTRAL = "You know as much as I do. Do as you think best."
 """The answer to a question that the task has no topic for."""
+LOOK_FIRST = "The calendar and the memos may say it; what the car doesn't know, ask me."
+"""What the driver adds to a wish of the suite ``clarify``, which is in English alone: where one may look."""
 ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""
 WORDS_PER_S = 2.5

@@ -12,10 +12,11 @@ from automotive_cosim.cockpit.language import Language, said, word
 from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.contracts.text import Quantity
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.tasking.dialogue import Says, Topic
+from automotive_cosim.tasking.dialogue import LOOK_FIRST, Says, Topic
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.moves import Consult, Hear, Inform, Move, Tap, TapUntil
 from automotive_cosim.tasking.parameters import KEEP, Choices, FromCockpit, Parameter, bind, rebuilt
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.task import Half, Task
 
@@ -104,8 +105,9 @@ def phrased(
     """
     voice = task.half(half_name).start.voice
     prefix = "" if voice is Seat.DRIVER else f"From the {voice.words} seat: "
+    suffix = f" {LOOK_FIRST}" if task.suite is Suite.CLARIFY else ""
     if language is Language.ENGLISH:
-        return tuple(prefix + template.format_map(parameters) for template in task.templates)
+        return tuple(prefix + template.format_map(parameters) + suffix for template in task.templates)
     own = speech(task, language)
     return tuple(own.lines.said(prefix + own.phrased(template, parameters)) for template in own.templates)
 

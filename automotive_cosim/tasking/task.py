@@ -238,6 +238,21 @@ class Half:
         return self.goal.writes | self.may_write
 
 
+class Hurry(StrEnum):
+    """What hurries whoever acts in a pair."""
+
+    ROAD = "road"
+    """Something on the road is due within ``HURRIED_S``."""
+    CALL = "call"
+    """Somebody rings, and gives up."""
+    WORDS = "words"
+    """The driver says more on the way, and half of what was to be done is done."""
+
+
+HURRIED_S = 8.0
+"""The shortest deadline of a half up to which the road hurries: four glances of two seconds (NHTSA 2013)."""
+
+
 @dataclass(frozen=True, slots=True)
 class Task:
     """One entry of the catalogue."""
@@ -313,6 +328,19 @@ class Task:
     def needs_picture(self) -> bool:
         """Whether something needed is in the picture alone."""
         return NEEDS_PICTURE in self.tags
+
+    @property
+    def hurries(self) -> Hurry | None:
+        """What hurries whoever acts; None if nothing does, or of a task that is no pair."""
+        if self.second is None:
+            return None
+        halves = (self.first, self.second)
+        if any(half.says for half in halves):
+            return Hurry.WORDS
+        if any(arrival.kind == "call" for half in halves for arrival in half.start.arrivals):
+            return Hurry.CALL
+        is_short = min(half.deadline.seconds for half in halves) <= HURRIED_S
+        return Hurry.ROAD if is_short and not any(half.start.parked for half in halves) else None
 
     @property
     def is_safety(self) -> bool:

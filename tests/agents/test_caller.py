@@ -20,7 +20,7 @@ from automotive_cosim.agents.written import written
 from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Observation
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ActionError, UserError
-from automotive_cosim.interface.functions import functions
+from automotive_cosim.interface.functions import CAR, functions
 from automotive_cosim.models import ChatMessage, ModelReply
 from automotive_cosim.models.apis import ChatTools
 
@@ -66,6 +66,7 @@ def test_each_call_is_a_step_and_its_result_goes_back_to_the_model(observation: 
     assert results[0].text == "ok: done"
     assert results[1].text.startswith("ok: {}\n\n## What the driver said\nFan to the maximum")
     assert len(results) == 2
+    assert "## Last result" not in results[1].text
 
 
 WORDS = "I would rather talk."
@@ -257,8 +258,8 @@ def test_the_interface_and_the_place_say_what_is_offered_and_told(observation: S
         return {each.name for each in tools(AgentSettings(Conditions.named(words)))}
 
     assert "click" in names()
-    assert "set_hvac_fan_speed" not in names()
-    assert {"click", "set_hvac_fan_speed"} <= names(interface="both")
+    assert CAR not in names()
+    assert {"click", CAR} <= names(interface="both")
     assert "click" not in names(interface="functions")
     assert "query" not in names(interface="functions", geo="none")
     for see, geo, is_listed, is_placed in (("tree", "full", True, True), ("nothing", "none", False, False)):

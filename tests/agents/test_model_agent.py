@@ -1,7 +1,8 @@
 """The cycle: what is asked, what is recorded, what is carried on, and what stops it."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from automotive_cosim.models import ChatMessage, ModelReply
 
 COUNTRY = "Place: Beauce, France\nSpeed limit here: 80 km/h (posted on D 24)"
 TAP = 'Situation: speeding\nPlan: then warn\nAction: {"action_type": "click", "index": 0}'
+FAILED = Feedback(FeedbackCode.NO_EFFECT, "")
 DONE = 'Action: {"action_type": "status", "goal_status": "complete"}'
 
 
@@ -80,26 +82,36 @@ def test_without_place_it_cannot_tell(observation, name):
 
 
 def test_each_stage_is_recorded_with_what_it_took(agent, observation):
-    made, model = agent(TAP, "Lesson: it opened", DONE)
+    made, model = agent(TAP, "Lesson: it is locked", DONE)
     made.act(observation("x"))
     assert [stage.name for stage in made.stages] == ["perceive", "interpret", "plan", "act"]
-    made.act(observation("x", time_s=1.0, feedback=Feedback(FeedbackCode.OK, "opened")))
+    made.act(observation("x", time_s=1.0, feedback=Feedback(FeedbackCode.RESTRICTED, "locked")))
     assert [stage.name for stage in made.stages] == ["reflect", "remember", "perceive", "interpret", "plan", "act"]
     by_name = {stage.name: stage for stage in made.stages}
-    assert by_name[StageName.REFLECT].text == "it opened"
+    assert by_name[StageName.REFLECT].text == "it is locked"
     assert by_name[StageName.PERCEIVE].text == model.asked[2].text
     replies = [stage.reply for stage in made.stages if stage.reply]
     assert [(reply.tokens_in, reply.cost_usd, reply.seconds) for reply in replies] == [(100, 0.01, 2.0)] * 2
     assert {stage.at_s for stage in made.stages} == {1.0}
 
 
-def test_history_and_plan_are_carried_on(agent, observation):
-    made, model = agent(TAP, "Lesson: it opened", DONE)
+@pytest.mark.parametrize("code", FeedbackCode)
+def test_a_lesson_is_asked_for_after_a_failure_alone(agent, observation, code):
+    made, model = agent(TAP, "Lesson: so", TAP)
     made.act(observation("x"))
-    made.act(observation("x", feedback=Feedback(FeedbackCode.OK, "opened")))
+    with suppress(ActionError):
+        made.act(observation("x", feedback=Feedback(code, "")))
+    asked = any("Lesson: ..." in message.text for message in model.asked)
+    assert asked == (code not in (FeedbackCode.NONE, FeedbackCode.OK, FeedbackCode.READ_OUT))
+
+
+def test_history_and_plan_are_carried_on(agent, observation):
+    made, model = agent(TAP, "Lesson: it is locked", DONE)
+    made.act(observation("x"))
+    made.act(observation("x", feedback=Feedback(FeedbackCode.RESTRICTED, "not now")))
     asked = model.asked[2].text
     assert "Step 1 at 0 s: click" in asked
-    assert "Speed -> ok opened; it opened" in asked
+    assert "Speed -> restricted not now; it is locked" in asked
     assert "## Your plan\nthen warn" in asked
 
 
@@ -153,7 +165,7 @@ def seen(observation):
 def test_m3a_sends_the_screen_and_the_marked_screen_then_before_and_after(agent, seen):
     made, model = agent(TAP, "Lesson: so", profile="m3a", sees=True)
     made.act(seen)
-    made.act(seen)
+    made.act(replace(seen, feedback=FAILED))
     assert [len(message.pictures) for message in model.asked] == [2, 2, 2]
     raw, marked = model.asked[0].pictures
     assert raw != marked
@@ -216,7 +228,7 @@ def test_memory_is_off_unless_it_is_given_a_file(agent, observation, tmp_path):
 
 
 def test_what_worked_is_read_in_the_next_episode(agent, observation, tmp_path):
-    made, _ = agent(TAP, "Lesson: so", DONE, profile="asurada", memory=tmp_path / "m")
+    made, _ = agent(TAP, DONE, profile="asurada", memory=tmp_path / "m")
     made.act(observation("Watch my speed"))
     made.act(observation("Watch my speed"))
     made.learn(True)
@@ -267,8 +279,8 @@ def test_the_picture_alone_comes_without_list_and_index(agent, observation):
     )
     seen = observation("Watch my speed", elements=None, screenshot=np.zeros((720, 1280, 3), np.uint8))
     assert made.channels.isdisjoint({Channel.ELEMENTS})
-    for _ in range(2):
-        assert made.act(seen) == Action(ActionType.CLICK, x=5, y=6)
+    for now in (seen, replace(seen, feedback=FAILED)):
+        assert made.act(now) == Action(ActionType.CLICK, x=5, y=6)
     first, back, _ = model.asked
     assert "index" not in first.text
     assert "## The screen" not in first.text

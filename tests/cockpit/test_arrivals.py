@@ -105,6 +105,16 @@ def test_a_call_that_nobody_answers_is_missed(ringing: Cockpit, around: Surround
     assert ringing.screen == "contact"
 
 
+@pytest.mark.parametrize(("who", "missed"), [(WHO, False), ("Somebody Else", True)])
+def test_who_rings_is_not_noted_as_missed_and_another_is(
+    make: Make, around: Surroundings, who: str, missed: bool
+) -> None:
+    cockpit = make(arrivals=[Arrival("call", 10.0, WHO), Arrival("call", 15.0, who)])
+    drive(cockpit, around, 0, 20)
+    assert cockpit.signals[CALL.RINGING] == WHO
+    assert any("Missed" in notice.text for notice in cockpit._state.notices) == missed
+
+
 def test_a_message_is_told_read_out_and_answered(make: Make, around: Surroundings) -> None:
     cockpit = make(arrivals=[Arrival("message", 5.0, WHO, "The gate is open.")])
     unread = cockpit.signals[CALL.UNREAD]

@@ -14,17 +14,19 @@ from automotive_cosim.cockpit.cabin import (
     CABIN_LOSS,
     CABIN_VOLUME_M3,
     COMPRESSOR_MINIMUM_C,
+    COOLANT_C,
     EVAPORATOR_C,
     FOG_OPAQUE,
+    HEATER_W,
     LEAK_PER_HOUR,
     LEAK_PER_HOUR_KMH,
     OCCUPANT_HEAT_W,
-    SUPPLY_MAXIMUM_C,
     Air,
     Cabin,
     CabinStart,
     Controls,
     dew_point_c,
+    hottest_c,
     humidity_ratio,
     relative_humidity_pct,
     saturation_hpa,
@@ -176,10 +178,32 @@ def test_the_cabin_settles_at_what_is_set_where_the_power_suffices(
     needed_c = set_c - gained_w / (BLOWER_FULL * fan_pct / 100 * AIR_CP)
     taken_c = set_c if is_closed else outside_c
     coldest_c = min(taken_c, EVAPORATOR_C) if outside_c > COMPRESSOR_MINIMUM_C else taken_c
-    if coldest_c <= needed_c <= SUPPLY_MAXIMUM_C:
+    if coldest_c <= needed_c <= hottest_c(coldest_c, BLOWER_FULL * fan_pct / 100):
         assert later.temperature_c == pytest.approx(set_c, abs=0.5)
     else:
         assert (later.temperature_c > set_c) is (needed_c < coldest_c)
+
+
+@pytest.mark.parametrize("outside_c", [-15, -5, 0, 8])
+def test_what_is_set_counts_at_a_low_fan_and_a_full_one_helps_no_more_than_it_blows(outside_c: int) -> None:
+    """Three tenths of the fan hold what is set as far as the heater can, and full fan warms some times faster."""
+    air = Air(outside_c, 50.0, 0.0, 50 / 3.6)
+
+    def warmed(set_c: float, fan_pct: float, seconds: float, begun_c: float = 10.0) -> float:
+        set_up = Controls(set_c, fan_pct, False, False, False, False, False, 0.0, 0.0)
+        start = Cabin.at(CabinStart(temperature_c=begun_c), air)
+        return start.after(seconds, set_up, air).temperature_c
+
+    hottest_hold_c = warmed(28.0, 30.0, 3600.0)
+    assert hottest_hold_c > {-15: 11.5, -5: 18.0, 0: 21.0, 8: 25.0}[outside_c]
+    for set_c in (16.0, 18.0, 21.0, 24.0):
+        assert warmed(set_c, 30.0, 3600.0) == pytest.approx(min(set_c, hottest_hold_c), abs=0.3)
+    slow, fast = (warmed(24.0, fan_pct, 30.0) - 10.0 for fan_pct in (30.0, 100.0))
+    assert 1.0 < fast / slow < 12.0
+    for blown in (0.01, 0.03, 0.06, 0.11):
+        given_w = blown * AIR_CP * (hottest_c(outside_c, blown) - outside_c)
+        assert 0 < given_w <= HEATER_W + 1e-6
+        assert hottest_c(outside_c, blown) < COOLANT_C
 
 
 def test_shorter_steps_change_little() -> None:

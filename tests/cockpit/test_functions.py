@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterator
 
 import pytest
 
+from automotive_cosim.cockpit import calls
 from automotive_cosim.cockpit.actions import perform
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.functions import CarFunction, groups
+from automotive_cosim.cockpit.functions import CarFunction, groups, named
+from automotive_cosim.cockpit.messages import Show
+from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import ACTUATORS, CATALOGUE, MEDIA, MOTION
 from automotive_cosim.cockpit.state import Command
 from automotive_cosim.cockpit.widgets import Button, Slider, Widget
 from automotive_cosim.contracts import ActionType, FeedbackCode
+from automotive_cosim.contracts.given import Interface
 from automotive_cosim.errors import ActionError
-from automotive_cosim.interface.functions import action_of, call_of
+from automotive_cosim.interface.functions import CAR, action_of, as_openai, call_of, grouped, offered
 from automotive_cosim.interface.translation import actions_of
 from tests.laws import over
 
@@ -142,3 +147,68 @@ def test_a_call_says_what_it_set_or_why_not(cockpit: Cockpit) -> None:
     with pytest.raises(ActionError, match="did you mean 'set_hvac_temperature'"):
         action_of("set_hvac_temp", {})
     assert action_of("wait", '{"seconds": 3}').action_type is ActionType.WAIT
+
+
+def test_whatever_a_screen_lists_can_be_read_by_how_it_is_listed(make: Callable[..., Cockpit]) -> None:
+    """Tabs and rows lead on by the text that they show; what is not there is told as that, with what is."""
+    parked = make(surroundings=outside(speed_kmh=0.0), signals={})
+    parked.inject(MOTION.GEAR.path, "P")
+    for app in ("calendar", "memo"):
+        perform(action_of("install_app", {"app": app, "on": True}), parked, ())
+    wrong, tried = list[str](), 0
+    for screen in pages():
+        for widget in _usable(parked, screen):
+            way = widget.on_tap
+            if not isinstance(way, Show) or not way.item or not widget.text:
+                continue
+            tried += 1
+            is_own = screen in calls._by_screen()[way.screen].pages
+            for item in (widget.text, way.item) if is_own else (way.item,):
+                read = perform(action_of("read_screen", {"screen": way.screen, "item": item}), parked, ())
+                if read.code is not FeedbackCode.OK or "no longer there" in read.text:
+                    wrong.append(f"{way.screen}, {item}: {read.text}")
+    assert not wrong, "\n".join(wrong)
+    assert tried > 10
+    for screen in ("appointment", "note", "phone", "seats"):
+        lost = perform(action_of("read_screen", {"screen": screen, "item": "xyzzy"}), parked, ())
+        assert lost.code is FeedbackCode.NO_SUCH_ELEMENT
+        assert "xyzzy" in lost.text
+
+
+def _usable(cockpit: Cockpit, screen: str) -> Iterator[Widget]:
+    twin = cockpit.copy()
+    twin.visit(screen)
+    yield from twin.tree.walk()
+
+
+def test_a_part_of_a_name_is_enough_where_it_means_one_thing() -> None:
+    names = ("Nora Frost", "Tom Hale", "Nora Kline", "Main road 1", "Main road 12")
+    assert [named(each, names) for each in ("tom", "hale  TOM", "frost", "main road 1")] == [
+        "Tom Hale", "Tom Hale", "Nora Frost", "Main road 1",
+    ]  # fmt: skip
+    assert [named(each, names) for each in ("nora", "", "to", "Nora Hale")] == [None] * 4
+
+
+@over(functions().values())
+def test_every_argument_says_in_words_what_it_takes_and_every_number_its_unit(function: CarFunction) -> None:
+    for each in function.parameters:
+        assert each.schema.get("description"), each.name
+        if each.schema["type"] == "number":
+            assert re.match(r"In \S+; ", each.schema["description"]), each.name
+
+
+def test_definitions_that_are_sent_with_each_question_have_twelve_thousand_characters_at_most() -> None:
+    """The car's functions go as one, which names each with what it takes; a call through it is the same action."""
+    sent = grouped(offered())
+    assert len(json.dumps([as_openai(each) for each in sent])) <= 12_000
+    listed = sent[-1].about
+    for function in functions().values():
+        assert f"\n{function.name}(" in listed
+        assert all(each.name in listed for each in function.parameters)
+    given = {"which": "driver", "celsius": 21.5}
+    for arguments in (given, json.dumps(given)):
+        through = action_of(CAR, {"function": "set_hvac_temperature", "arguments": arguments})
+        assert through == action_of("set_hvac_temperature", given)
+    with pytest.raises(ActionError, match="did you mean 'set_hvac_temperature'"):
+        action_of(CAR, {"function": "set_hvac_temp"})
+    assert grouped(offered(Interface.TOUCH)) == offered(Interface.TOUCH)

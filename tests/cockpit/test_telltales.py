@@ -28,6 +28,7 @@ CAUSES = {
     Telltale.FROST: {OUTSIDE.TEMPERATURE.path: -2.0},
     Telltale.HIGH_BEAM: {LIGHTS.HIGH_BEAM.path: True},
     Telltale.LOW_BEAM: {LIGHTS.LOW_BEAM.path: True},
+    Telltale.POSITION: {LIGHTS.POSITION.path: True},
     Telltale.FRONT_FOG: {LIGHTS.FRONT_FOG.path: True},
     Telltale.REAR_FOG: {LIGHTS.REAR_FOG.path: True},
 }

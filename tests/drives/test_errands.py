@@ -18,8 +18,9 @@ from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.cosim.car import with_cause
-from automotive_cosim.drives.errands import AFTER_S, ASKED_APART_S, SPARE_S, said, understood, with_errands
+from automotive_cosim.drives.errands import AFTER_S, ASKED_APART_S, SPARE_S, said, thanks, understood, with_errands
 from automotive_cosim.drives.events import KINDS, DriveAct, Tracker
+from automotive_cosim.drives.events.errands import carried_out
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth, facts_of, judge
 from automotive_cosim.drives.score import score
@@ -114,6 +115,24 @@ def test_a_temperature_counts_by_the_state(
     assert event.credit == pytest.approx(credit)
     assert not any(act.worth.is_nuisance for act in found.acts)
     assert [act.worth for act in found.acts].count(Worth.RIGHT) == (credit > 0)
+
+
+def test_thanks_are_said_once_it_is_done_and_mean_nothing_to_do() -> None:
+    declined = replace(WARMTH, is_declined=True)
+    for errand, done in ((WARMTH, {WARMTH.at_s}), (declined, set[float]())):
+        drive = [
+            moment(
+                float(second),
+                asked=(errand,) if second >= errand.at_s else (),
+                **warm(23.0 if second > 20 else 21.0),
+            )
+            for second in range(40)
+        ]
+        assert carried_out(drive[:20]) == frozenset()
+        assert carried_out(drive) == done
+    for language in Language:
+        assert said(WARMTH, language) in thanks(WARMTH, language)
+        assert understood(thanks(WARMTH, language)) is None
 
 
 def test_the_right_reply_alone_counts() -> None:

@@ -8,8 +8,10 @@ from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.signals import CABIN, LIGHTS
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import AlertKind, Answer, PullOver, Severity, SlowDown
+from automotive_cosim.contracts.given import Order
 from automotive_cosim.drives.acts import acts_of, refusal
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, EventKind
+from automotive_cosim.drives.events.base import Measured
 from automotive_cosim.drives.judge import NOT_DUE, NUISANCE, ORDER, EventOutcome, Judgement, Worth, judge
 from automotive_cosim.drives.score import score, together
 from tests.drives.scenes import moment
@@ -46,6 +48,27 @@ def judged(
         return None if kind.name in true else f"no {kind.name}"
 
     return judge(KINDS, events, acts, due or {}, against, {LIGHTS.HIGH_BEAM.path: False})
+
+
+@pytest.mark.parametrize("order", Order)
+def test_what_a_measure_alone_speaks_against_is_charged_to_who_was_told_it(order: Order) -> None:
+    """52 in a 50, and an alert again: who was told no threshold and no minute is charged for neither, but for what
+    is simply not so."""
+
+    def acts(fact: str, *at_s: float) -> list[Worth]:
+        found = judge(KINDS, [LOOKALIKE], [warn(each) for each in at_s], {}, lambda kind, time_s: fact, order=order)
+        return [act.worth for act in found.acts]
+
+    is_told = order is Order.FULL
+    assert acts(Measured("52 where 50 apply"), 110.0) == [Worth.LOOKALIKE if is_told else Worth.NEUTRAL]
+    assert acts("48 where 50 apply", 110.0) == [Worth.LOOKALIKE]
+    assert acts("48 where 50 apply", 190.0) == [Worth.FALSE]
+    again = [
+        judge(KINDS, [SPEEDING], [warn(106.0), warn(106.0 + later)], {}, lambda kind, time_s: None, order=order)
+        .acts[1].worth
+        for later in (10.0, 20.0)
+    ]  # fmt: skip
+    assert again == [Worth.REPEAT, Worth.NEUTRAL if order is Order.PLAIN else Worth.REPEAT]
 
 
 def warn(time_s: float, kind: AlertKind = AlertKind.SPEED) -> DriveAct:

@@ -20,13 +20,13 @@ from automotive_cosim.contracts import (
     Sight,
     SightKind,
 )
-from automotive_cosim.contracts.given import Language
+from automotive_cosim.contracts.given import Language, Order
 from automotive_cosim.drives.alarm import Alarm, noticed
 from automotive_cosim.drives.changes import LONGEST_S, WAKES
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.driver import driver_line
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
+from automotive_cosim.drives.order import ANSWERS, ordered
 from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.session import DriveSession
@@ -496,7 +496,7 @@ def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
 @pytest.mark.parametrize("language", Language)
 def test_driver_and_car_speak_the_language(simulations: Simulations, language: Language) -> None:
     with closing(DriveSpec(FAMILY, SEED, Conditions(language=language)).begin(simulations)) as session:
-        assert session.goal == STANDING_ORDERS[language]
+        assert session.goal == ordered(Order.PLAIN, language, with_errands=False)
         assert session.world.cockpit.signals[HMI.LANGUAGE] == language
         session.step(Action(ActionType.ASK_DRIVER, text="?"))
         assert session.observation.said == (ANSWERS[language],)

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from automotive_cosim.agents.answer import labelled, read
-from automotive_cosim.drives.order import STANDING_ORDERS
+from automotive_cosim.contracts.given import Language, Order
+from automotive_cosim.drives.order import ordered
 from automotive_cosim.models import ChatMessage, Rules
 from automotive_cosim.models.page import Page
 from automotive_cosim.models.skills import SKILLS, Course, call, in_app, opened, say, slide, tap, typed
@@ -148,7 +149,12 @@ def test_random_prompts_never_break_it():
 @pytest.mark.slow
 def test_no_skill_hides_behind_another():
     """Each skill is reached by some phrasing that the table was made on, or by the standing order of a drive."""
-    orders = STANDING_ORDERS.values()
+    orders = {
+        ordered(order, language, with_errands=errands)
+        for order in Order
+        for language in Language
+        for errands in (False, True)
+    }
     assert len({skill_of(order) for order in orders}) == 1
     goals = [*orders, *(goal for task in CATALOGUE.values() for goal in first_goals(task))]
     assert set(range(len(SKILLS))) <= {skill_of(goal) for goal in goals}

@@ -67,7 +67,9 @@ def test_the_oracle_succeeds_and_everything_is_recorded(run):
     lines = _lines(episode.folder)
     pictures = sorted(path.name for path in (episode.folder / "screenshots").iterdir())
     assert [line["step"] for line in lines] == list(range(result.steps + 1))
-    assert pictures == sorted({f"step_{line['picture']:03d}.jpg" for line in lines})
+    assert pictures == sorted(
+        {f"step_{line['picture']:03d}.jpg" for line in lines} | {f"road_{line['step']:03d}.jpg" for line in lines}
+    )
     assert [line["sha256"] for line in lines] == [trace.digests(line) for line in lines]
 
 

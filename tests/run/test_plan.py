@@ -4,13 +4,14 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim import scenarios
+from automotive_cosim.contracts.given import Clock
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.plan import choose, make_plan, read_plan
 from automotive_cosim.run.trial import Limits
 from automotive_cosim.tasking.sets import Split, Suite
 from automotive_cosim.tasking.split import split_of
-from automotive_cosim.tasking.task import Subset
+from automotive_cosim.tasking.task import Hurry, Subset
 from automotive_cosim.tasks import CATALOGUE
 
 STANDARD = {task.id: task for task in CATALOGUE.of(Suite.STANDARD)}
@@ -40,6 +41,17 @@ def test_subsets_part_the_catalogue():
     assert all(
         {CATALOGUE[task].subset for task in part} == {name} for name, part in zip(Subset, parts, strict=True)
     )
+
+
+def test_the_suite_live_is_of_pairs_that_hurry_and_has_the_model_s_clock_unless_told_otherwise():
+    chosen = choose(["all"], "live")
+    assert len(chosen) >= 30
+    assert {CATALOGUE[name].hurries for name in chosen} == set(Hurry)
+    assert all(len(CATALOGUE[name].halves) == 2 for name in chosen)
+    assert plan(suite="live").clock == (Clock.MODEL,)
+    assert plan(suite="live", clock=["fixed"]).clock == (Clock.FIXED,)
+    assert make_plan(plan(suite="live", clock=["fixed"]).as_json()).clock == (Clock.FIXED,)
+    assert plan(suite="hard").clock == (Clock.FIXED,)
 
 
 def test_a_suite_bounds_words_but_not_ids():

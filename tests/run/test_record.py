@@ -25,7 +25,9 @@ def test_force_replaces_the_record_and_leaves_the_rest(run, tmp_path):
     check_folder(first.folder, force=True)
     second = run("oracle")
     pictures = {path.name for path in (second.folder / "screenshots").iterdir()}
-    assert pictures == {f"step_{line['picture']:03d}.jpg" for line in read_steps(second.folder)}
+    assert {name for name in pictures if name.startswith("step")} == {
+        f"step_{line['picture']:03d}.jpg" for line in read_steps(second.folder)
+    }
     assert len(read_steps(second.folder)) == second.result.steps + 1 < first.result.steps + 1
     assert (second.folder / "notes.txt").read_text(encoding="utf-8") == "mine"
 

@@ -169,7 +169,8 @@ def write_evaluation(
     (folder / "episodes.jsonl").write_text(text, encoding="utf-8")
     trace = [*map(step, range(4)), {"result": result()}]
     (folder / "traces" / "one.jsonl.gz").write_bytes(packed(trace))
-    Image.new("RGB", (320, 180)).save(folder / "pictures" / "one" / "screenshots" / "step_000.jpg")
+    for name in ("step_000.jpg", "road_001.jpg"):
+        Image.new("RGB", (320, 180)).save(folder / "pictures" / "one" / "screenshots" / name)
     return folder
 
 

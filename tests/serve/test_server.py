@@ -171,6 +171,9 @@ def test_an_evaluation_and_its_episodes(serving: Serving, tmp_path: Path) -> Non
     assert browser(f"{base}/one").json["goal"] == "Watch my speed."
     steps = browser(f"{base}/one/steps").json["steps"]
     assert [each["has_picture"] for each in steps] == [True, False, False, False]
+    assert [each["has_view"] for each in steps] == [False, True, False, False]
+    assert browser(f"{base}/one/views/1").headers["Content-Type"] == "image/jpeg"
+    assert browser(f"{base}/one/views/0").status == browser(f"{base}/one/views/x").status == 404
     assert steps[1]["words"] == "taps “Warn driver”"
     assert steps[1]["target"] == [640, 360, 960, 480]
     assert browser(f"{base}/one/pictures/0").headers["Content-Type"] == "image/jpeg"

@@ -10,6 +10,7 @@ from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasking.checks import SignalIs
+from automotive_cosim.tasking.dialogue import LOOK_FIRST
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.task import Basis, Differs, Dimension
 from automotive_cosim.tasks import CATALOGUE
@@ -59,9 +60,9 @@ def test_what_is_right_in_one_half_is_wrong_in_the_other(task):
 
 
 def heard(instance):
-    """The words without the seat that they come from."""
+    """The words without the seat that they come from, and without where one may look."""
     voice = instance.half.start.voice
-    return instance.goal.removeprefix(f"From the {voice.words} seat: ")
+    return instance.goal.removeprefix(f"From the {voice.words} seat: ").removesuffix(f" {LOOK_FIRST}")
 
 
 @over(task for task in TASKS if task.second)

@@ -182,7 +182,8 @@ def remove_appointment(state: State, appointment: AppointmentName) -> CallMade:
 
 def _index(state: State, name: str) -> int | Feedback:
     entries = state.of(Agenda).entries
-    for names in ([entry.name for entry in entries], [entry.title for entry in entries]):
+    listed = [f"{entry.at} {entry.title}" for entry in entries]
+    for names in ([entry.name for entry in entries], [entry.title for entry in entries], listed):
         found = named(name, names)
         if found is not None:
             return names.index(found)

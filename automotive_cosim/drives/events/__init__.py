@@ -46,10 +46,7 @@ KINDS: Mapping[str, EventKind] = {
         people.LeftBehind(),
         border.LimitUnits(),
         border.RuleChange(),
-        errands.ErrandClimate(),
-        errands.ErrandMessage(),
-        errands.ErrandCall(),
-        errands.ErrandPlace(),
+        *errands.ERRANDS,
     )
 }
 """Every kind by its name."""

@@ -96,6 +96,12 @@ class DriveAct:
         return "said" + (_quoted(" ", self.said) or " nothing")
 
 
+class Measured(str):
+    """A fact that speaks against a warning by a measure alone: who was told no threshold may see it otherwise."""
+
+    __slots__ = ()
+
+
 class EventKind(ABC):
     """One kind of event. An instance has no state: everything comes from the moments."""
 

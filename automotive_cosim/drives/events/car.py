@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.occupants import Seat, seated_by
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, MOTION
 from automotive_cosim.contracts import AlertKind, PullOver, Reroute
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, off
+from automotive_cosim.drives.events.base import EventKind, Measured, Sighting, Wanted, off
 from automotive_cosim.drives.events.law import grows, speed_kmh
 
 BELT_KMH = 25.0
@@ -116,6 +116,10 @@ class FlapOpen(EventKind):
         return "only a window is open" if opened else "trunk and charging flap are shut"
 
 
+SOFTER = 0.92
+"""Share of the recommended pressure below which a careful driver may speak of it."""
+
+
 class Tyre(EventKind):
     """A tyre loses its air."""
 
@@ -147,7 +151,12 @@ class Tyre(EventKind):
     def against(self, drive: Sequence[Moment]) -> str | None:
         """Tyres that keep their air."""
         lowest_kpa = min(float(drive[-1].signals[tyre.path]) for tyre in TYRES)
-        return f"the softest tyre has {lowest_kpa:.0f} kPa of {RECOMMENDED_KPA:.0f}, and keeps them"
+        words = f"the softest tyre has {lowest_kpa:.0f} kPa of {RECOMMENDED_KPA:.0f}, and keeps them"
+        return Measured(words) if lowest_kpa < SOFTER * RECOMMENDED_KPA else words
+
+
+SCANT = 1.5
+"""Times what is left to go: with less range than this, a careful driver may speak of it."""
 
 
 class RangeShort(EventKind):
@@ -180,4 +189,5 @@ class RangeShort(EventKind):
         range_m, left_m = float(now.signals[ENERGY.RANGE.path]), now.driving.ahead.route_left_m
         if range_m < left_m + NEAR_RANGE_M or grows(drive, ENERGY.RANGE.path, -LOST_M):
             return None
-        return f"range {range_m / 1000:.0f} km, and {left_m / 1000:.1f} km to go"
+        words = f"range {range_m / 1000:.0f} km, and {left_m / 1000:.1f} km to go"
+        return Measured(words) if range_m < SCANT * left_m else words

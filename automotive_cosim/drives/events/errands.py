@@ -41,10 +41,7 @@ class ErrandEvent(EventKind):
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """What is asked for, and since when it is done."""
         now = drive[-1]
-        for errand in now.asked:
-            passed_s = now.time_s - errand.at_s
-            if errand.kind is not self.errand or passed_s > self.hold_s + self.grace_s + LINGERS_S:
-                continue
+        for errand in self.pending(now):
             words, subject = self.words(errand), f"{errand.at_s:.0f}"
             if errand.is_declined:
                 yield Sighting(words, subject, lookalike=True)
@@ -59,6 +56,11 @@ class ErrandEvent(EventKind):
                 hold_s=self.hold_s,
                 done_s=last[0].time_s if done else None,
             )
+
+    def pending(self, now: Moment) -> tuple[Errand, ...]:
+        """What was asked for, of this kind, and still counts."""
+        lasts_s = self.hold_s + self.grace_s + LINGERS_S
+        return tuple(each for each in now.asked if each.kind is self.errand and now.time_s - each.at_s <= lasts_s)
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """What nobody asks for, or the driver does not want."""
@@ -157,3 +159,16 @@ class ErrandPlace(ErrandEvent):
     def is_done(self, errand: Errand, begun: Moment, now: Moment) -> bool:
         """Whether it is the destination."""
         return bool(now.commands["navigation.destination"] == errand.about)
+
+
+ERRANDS = (ErrandClimate(), ErrandMessage(), ErrandCall(), ErrandPlace())
+
+
+def carried_out(drive: Sequence[Moment]) -> frozenset[float]:
+    """When the errands were asked for that are done now, in simulation time."""
+    return frozenset(
+        errand.at_s
+        for kind in ERRANDS
+        for errand, sighting in zip(kind.pending(drive[-1]), kind.sight(drive), strict=True)
+        if sighting.done_s is not None
+    )

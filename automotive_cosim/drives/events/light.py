@@ -9,7 +9,7 @@ from typing import ClassVar
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import STANDING_BELOW_MPS, AlertKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import DriveAct, EventKind, Sighting, Wanted, off, on
+from automotive_cosim.drives.events.base import DriveAct, EventKind, Measured, Sighting, Wanted, off, on
 from automotive_cosim.drives.events.law import may_say, says
 from automotive_cosim.drives.margins import LAMP_S
 from automotive_cosim.geo.context import GeoContext
@@ -152,7 +152,7 @@ class FogLamps(EventKind):
             return "no fog lamp is on"
         if now.weather.visibility >= CLEAR_AIR_M or any(may_say(now.context, topic, "forbidden") for topic in lit):
             return None
-        return f"a fog lamp where one sees {now.weather.visibility:.0f} m"
+        return Measured(f"a fog lamp where one sees {now.weather.visibility:.0f} m")
 
 
 def _fog_lamps(now: Moment) -> set[str]:

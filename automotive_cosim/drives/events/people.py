@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.occupants import seated_by
 from automotive_cosim.cockpit.signals import CALL, DRIVE, HVAC, MOTION, OCCUPANT
 from automotive_cosim.contracts import AlertKind, PullOver, SightKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
+from automotive_cosim.drives.events.base import EventKind, Measured, Sighting, Wanted, on
 from automotive_cosim.drives.events.law import SLOW_KMH, speed_kmh
 from automotive_cosim.drives.margins import gaze_s
 
@@ -52,7 +52,7 @@ class Fatigue(EventKind):
         driven = drive[-1].sight(SightKind.DRIVING_TIME)
         if driven is None or driven.value is None:
             return "less than an hour at the wheel"
-        return f"{driven.value:.1f} h at the wheel; a break is due after {BREAK_AFTER_H:.0f}"
+        return Measured(f"{driven.value:.1f} h at the wheel; a break is due after {BREAK_AFTER_H:.0f}")
 
 
 class PhoneUse(EventKind):

@@ -20,7 +20,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.changes import in_sight
 from automotive_cosim.drives.driver import IN_FORCE_S, SETS_OFF, STOPS
-from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
+from automotive_cosim.drives.events.base import EventKind, Measured, Sighting, Wanted, on
 from automotive_cosim.drives.events.law import REACTION_S, certain, may_say, speed_kmh, time_left_s
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.traffic.ego import EASING_MPS2
@@ -109,7 +109,7 @@ class TunnelAhead(EventKind):
         if away_m is None or away_m > HORIZON_M:
             return "no tunnel within 2 km"
         left_s = away_m / max(now.driving.speed_mps, 0.1)
-        return f"the tunnel is {left_s:.0f} s away" if left_s > MINUTE_S else None
+        return Measured(f"the tunnel is {left_s:.0f} s away") if left_s > MINUTE_S else None
 
 
 class JamTail(EventKind):
@@ -181,7 +181,7 @@ class RearEnd(EventKind):
             return "nobody comes close from behind"
         closing_mps = max(follower.value or 0.0, 0.1)
         left_s = follower.distance_m / closing_mps
-        return None if left_s < REAR_END_S else f"the vehicle behind is {left_s:.0f} s away"
+        return None if left_s < REAR_END_S else Measured(f"the vehicle behind is {left_s:.0f} s away")
 
 
 class StandsAhead(EventKind):
@@ -313,6 +313,10 @@ class Corridor(EventKind):
         return f"no jam, at {speed_kmh(now):.0f} km/h"
 
 
+TAUGHT_S = 2.0
+"""The gap that drivers are taught: closer than this, somebody may speak of it."""
+
+
 class LeaderClose(EventKind):
     """Too close behind the vehicle ahead."""
 
@@ -353,7 +357,10 @@ class LeaderClose(EventKind):
             return "the car stands"
         least_s = max([CLOSE_S, *_lawful_s(now, verified=False)])
         gap_s = leader.gap_m / mps
-        return None if gap_s < least_s else f"a gap of {gap_s:.1f} s, where {least_s:.1f} s are asked"
+        words = f"a gap of {gap_s:.1f} s, where {least_s:.1f} s are asked"
+        if gap_s < least_s:
+            return None
+        return Measured(words) if gap_s < TAUGHT_S else words
 
 
 def _lawful_s(now: Moment, *, verified: bool = True) -> Iterator[float]:
@@ -402,7 +409,7 @@ class LeaderBrakes(EventKind):
             return f"the vehicle ahead comes no closer, {leader.gap_m:.0f} m ahead"
         if needed_mps2 >= EARLY_MPS2 or ttc_s < EARLY_TTC_S:
             return None
-        return f"{ttc_s:.0f} s to collision, and braking with {needed_mps2:.1f} m/s2 is enough"
+        return Measured(f"{ttc_s:.0f} s to collision, and braking with {needed_mps2:.1f} m/s2 is enough")
 
 
 class TractorAhead(EventKind):
@@ -447,4 +454,4 @@ class TractorAhead(EventKind):
         if closing_mps <= 1.0:
             return f"the vehicle ahead drives {leader.speed_mps * KMH_PER_MPS:.0f} km/h, as fast as the car"
         left_s = leader.gap_m / closing_mps
-        return f"{left_s:.0f} s to the vehicle ahead" if left_s > SOON_S else None
+        return Measured(f"{left_s:.0f} s to the vehicle ahead") if left_s > SOON_S else None

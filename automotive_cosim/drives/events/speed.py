@@ -8,7 +8,7 @@ from automotive_cosim.cockpit.sensor_range import HORIZON_M
 from automotive_cosim.cockpit.signals import ADAS
 from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, Cruise, PullOver, SightKind, SlowDown
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import DriveAct, EventKind, Sighting
+from automotive_cosim.drives.events.base import DriveAct, EventKind, Measured, Sighting
 from automotive_cosim.drives.events.law import (
     REACTION_S,
     SLOW_KMH,
@@ -86,8 +86,13 @@ class OverLimit(SpeedKind):
         return None if kmh > limit.kmh + margin_kmh(limit.kmh) else _kept(kmh, limit.kmh)
 
 
+SAME_KMH, HAZE_M = 5.0, 2000.0
+"""As fast as a lower limit ahead, and the sight in haze: nearer than these, a careful driver may speak of it."""
+
+
 def _kept(kmh: float, limit_kmh: float) -> str:
-    return f"{kmh:.0f} km/h where {limit_kmh:.0f} apply, within {margin_kmh(limit_kmh):.0f} km/h"
+    words = f"{kmh:.0f} km/h where {limit_kmh:.0f} apply, within {margin_kmh(limit_kmh):.0f} km/h"
+    return Measured(words) if kmh > limit_kmh else words
 
 
 def _over(kmh: float, limit_kmh: float, words: str) -> Iterator[Sighting]:
@@ -150,7 +155,8 @@ class LimitFalls(SpeedKind):
             return f"the limit ends in {away_m:.0f} m"
         if kmh > following.kmh + margin_kmh(following.kmh):
             return None
-        return f"{kmh:.0f} km/h, and {following.kmh:.0f} apply in {away_m:.0f} m"
+        words = f"{kmh:.0f} km/h, and {following.kmh:.0f} apply in {away_m:.0f} m"
+        return Measured(words) if kmh > following.kmh - SAME_KMH else words
 
 
 def _kept_at_the_sign(drive: Sequence[Moment]) -> Iterator[Sighting]:
@@ -270,7 +276,8 @@ class WeatherSpeed(SpeedKind):
                 return None
         if sight_m < FOG_M and not now.driving.road.in_tunnel:
             return None
-        return f"the car stops within {_stopping_m(now):.0f} m, and its driver sees {sight_m:.0f} m"
+        words = f"the car stops within {_stopping_m(now):.0f} m, and its driver sees {sight_m:.0f} m"
+        return Measured(words) if sight_m < HAZE_M or now.weather.precipitation > 0 else words
 
 
 def _stopping_m(now: Moment) -> float:

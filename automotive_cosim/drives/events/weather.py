@@ -9,7 +9,7 @@ from automotive_cosim.cockpit.notices import NOTICED
 from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, off, on
+from automotive_cosim.drives.events.base import EventKind, Measured, Sighting, Wanted, off, on
 from automotive_cosim.drives.events.law import SLOW_KMH, TREND_S, grows, speed_kmh
 from automotive_cosim.traffic.road_weather import ICY
 
@@ -23,6 +23,10 @@ LOSS = 0.015
 """Friction that a road loses within ten seconds, at least, on its way to snow or ice."""
 COLD_C = 4.0
 """Cars warn of possible ice from this temperature."""
+
+
+SEEN = 0.03
+"""Share of fogged or wet glass that one sees."""
 
 
 class GlassFogs(EventKind):
@@ -62,7 +66,8 @@ class GlassFogs(EventKind):
         fog = float(drive[-1].signals[GLASS.WINDSHIELD_FOG.path])
         if fog >= NOTICED or grows(drive, GLASS.WINDSHIELD_FOG.path, GROWTH):
             return None
-        return f"the windshield is fogged by {fog:.0%}, and no more than before"
+        words = f"the windshield is fogged by {fog:.0%}, and no more than before"
+        return Measured(words) if fog > SEEN else words
 
 
 class Wipers(EventKind):
@@ -97,7 +102,8 @@ class Wipers(EventKind):
             return f"the wipers are on: {str(wipers).lower().replace('_', ' ')}"
         if film >= NOTICED or grows(drive, GLASS.WINDSHIELD_FILM.path, GROWTH):
             return None
-        return f"the windshield is covered by {film:.0%}, and no more than before"
+        words = f"the windshield is covered by {film:.0%}, and no more than before"
+        return Measured(words) if film > SEEN else words
 
 
 class Slippery(EventKind):

@@ -9,7 +9,7 @@ from datetime import datetime
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.contracts.plain import counted, model_and_options
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.order import STANDING_ORDERS
+from automotive_cosim.drives.order import ordered
 from automotive_cosim.measures.exposure import BANDS_KMH, ExposureCell, band_named
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -63,9 +63,12 @@ def use(subject: Subject) -> Section:
     """What the agent was asked to do."""
     told = []
     if subject.drives:
+        orders = dict.fromkeys(
+            ordered(row.conditions.order, Language.ENGLISH, with_errands=False) for row in subject.drives
+        )
         told.append(
             f"In a drive, the agent watches for {_minutes(subject.drives)} while a driver drives. Its standing "
-            f"order: “{STANDING_ORDERS[Language.ENGLISH]}”"
+            f"order: {' or '.join(f'“{order}”' for order in orders)}"
         )
     if subject.episodes:
         goals = len({row.task for row in subject.episodes})

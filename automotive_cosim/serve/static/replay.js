@@ -27,6 +27,7 @@ export async function replayPage(query, id, episode) {
   } });
   const target = h("div", { class: "target", hidden: true });
   const noScreen = h("p", { class: "muted empty" }, "No picture of this screen was kept.");
+  const ahead = h("img", { class: "ahead", alt: "", hidden: true, width: 640, height: 360 });
   const box = h("div", { class: "frame" }, screen, target, noScreen);
   const canvas = h("canvas", { tabindex: 0, role: "img", "aria-label": "The road from above" });
   const about = h("p", { class: "about" });
@@ -152,6 +153,11 @@ export async function replayPage(query, id, episode) {
       screen.src = `${base}/pictures/${pictured.picture}`;
       screen.alt = `The cockpit's screen after step ${pictured.number}: ${pictured.words}`;
     }
+    ahead.hidden = !now?.has_view;
+    if (!ahead.hidden) {
+      ahead.src = `${base}/views/${now.number}`;
+      ahead.alt = `The road ahead after step ${now.number}`;
+    }
     const next = steps[index + 1];
     target.hidden = !(pictured && next?.target);
     if (!target.hidden) {
@@ -263,7 +269,7 @@ export async function replayPage(query, id, episode) {
     title: run.task,
     content: [heading, note,
       h("div", { class: run.of_study ? "stage wide" : "stage" },
-        run.of_study ? null : h("figure", { class: "cockpit card" }, box),
+        run.of_study ? null : h("figure", { class: "cockpit card" }, ahead, box),
         h("figure", { class: "card map" }, canvas,
           h("div", { class: "tools" }, button("+", () => view.zoom(1.4), "Zoom in (+)"), button("−", () => view.zoom(1 / 1.4), "Zoom out (−)"), ego, turn, button("All roads", () => view.whole(), "All recorded roads (0)")),
           h("figcaption", {}, about, vehicle))),

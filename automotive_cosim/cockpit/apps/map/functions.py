@@ -98,12 +98,10 @@ def _found(state: State, name: str) -> str | Feedback:
     to be typed, which is locked while driving."""
     navigation, atlas = state.of(Navigation), state.of(Gazetteer)
     listed = (*navigation.favourites, *navigation.recents, *(place.name for place in atlas.places))
-    if found := named(name, listed):
-        return found
-    street = named(name, state.roads.names)
-    if street is None:
+    found = named(name, (*listed, *state.roads.names))
+    if found is None:
         return NOWHERE
-    return locked(state, Restriction.NO_KEYBOARD) or street
+    return found if found in listed else locked(state, Restriction.NO_KEYBOARD) or found
 
 
 FUNCTIONS = (navigate_to, take_route, avoid_on_route, save_place, search_places)

@@ -137,12 +137,10 @@ def _found(state: State, name: str) -> str | Feedback:
         *names[: state.entries_limit],
         *((phone.ringing.who,) if phone.ringing else ()),
     )
-    if found := named(name, listed):
-        return found
-    other = named(name, names)
-    if other is None:
+    found = named(name, (*listed, *names))
+    if found is None:
         return NOBODY
-    return locked(state, Restriction.LIMIT_CONTENT) or other
+    return found if found in listed else locked(state, Restriction.LIMIT_CONTENT) or found
 
 
 FUNCTIONS = (call, handle_call, send_message, send_figure, read_messages, favourite_contact, do_not_disturb)

@@ -351,7 +351,10 @@ def _ring(state: State, arrival: Arrival, linked: bool) -> None:
     if not (linked and _covered(state)):
         return
     phone = state.of(Phone)
-    if phone.do_not_disturb or phone.on_call is not None or phone.ringing is not None:
+    present = {each.who for each in (phone.ringing, phone.on_call) if each is not None}
+    if arrival.who in present:
+        return
+    if phone.do_not_disturb or present:
         _missed(state, arrival.who)
     else:
         state.keep(replace(phone, ringing=Ringing(arrival.who, state.time_s)))
