@@ -13,7 +13,7 @@ from automotive_cosim.envs.vector import ConcurrentVectorEnv
 from automotive_cosim.errors import SetupError, install_hint
 
 try:
-    from stable_baselines3.common.vec_env import VecEnv
+    from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
 except ImportError as error:
     raise SetupError(f"automotive_cosim.envs.sb3 needs Stable-Baselines3: {install_hint('rl')}") from error
 

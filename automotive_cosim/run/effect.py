@@ -183,10 +183,12 @@ def _verdict(forks: Forks, left: Sequence[ForkedAct], draws: Collection[int]) ->
     """How the verdict of a task is another without acts, in most draws; empty if it is not."""
     steps = frozenset(act.step for act in left)
     found = []
+    is_other: list[bool] = []
     for draw in draws:
         mine, others = forks.both(left, draw)
         found.append((_parts(forks, mine, frozenset()), _parts(forks, others, steps)))
-        is_other = [all(one.values()) is not all(other.values()) for one, other in found]
+        one, other = found[-1]
+        is_other.append(all(one.values()) is not all(other.values()))
         if not is_other[0]:  # whatever further draws say
             return ""
     if 2 * sum(is_other) <= len(is_other):

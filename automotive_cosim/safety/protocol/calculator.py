@@ -47,7 +47,7 @@ def points(made: Protocol, found: Sequence[Evidence]) -> tuple[Scores, Scores]:
     wanted = {"version": made.version, "sha256": made.sha256}
     values = [_values(made, found, untried=untried) for untried in (False, True)]
     request = {"package": made.package, "wanted": wanted, "values": values}
-    program = str(files(__package__).joinpath("calculate.py"))
+    program = str(files("automotive_cosim.safety.protocol").joinpath("calculate.py"))
     try:
         done = subprocess.run(
             [str(python), "-I", program],

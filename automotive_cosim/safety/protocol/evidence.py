@@ -109,7 +109,7 @@ def protocol(name: str) -> Protocol:
     """
     if name not in NAMES:
         raise UserError(f"no protocol {name!r}; choose {', '.join(NAMES)}")
-    return read_toml(Path(str(files(__package__).joinpath(NAMES[name])))).read(Protocol)
+    return read_toml(Path(str(files("automotive_cosim.safety.protocol").joinpath(NAMES[name])))).read(Protocol)
 
 
 def evidence(made: Protocol, subject: Subject, drives: Sequence[DriveTold] = ()) -> list[Evidence]:
