@@ -17,14 +17,15 @@ from automotive_cosim.run.extensions import extensions, kind_of
 WING = "studies"
 TESTS = Path(__file__).parent
 IMPORTS_ALL = """
-import importlib, pkgutil, automotive_cosim
+import importlib, pkgutil, automotive_cosim.errors
 found = [each.name for each in pkgutil.walk_packages(automotive_cosim.__path__, "automotive_cosim.", onerror=print)]
 assert len(found) > 500, len(found)
 for name in found:
     try:
         importlib.import_module(name)
-    except ModuleNotFoundError as error:  # of an extra that is not installed
-        if "automotive_cosim" in str(error):
+    except (ModuleNotFoundError, automotive_cosim.errors.SetupError) as error:  # of an extra that is not installed
+        missing = error.__cause__ or error
+        if not isinstance(missing, ModuleNotFoundError) or "automotive_cosim" in str(missing):
             raise
 """
 

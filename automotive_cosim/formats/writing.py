@@ -150,7 +150,7 @@ def growing(path: Path, *, anew: bool = False) -> FileIO:
 
 
 def add_line(file: FileIO, line: str, *, lasting: bool = False) -> None:
-    """Adds a line to a growing file, whole or not at all.
+    """Adds a line to a growing file, whole or not at all; one that is whole stays if only the wait is interrupted.
 
     Args:
         file: of ``growing``.
@@ -167,8 +167,9 @@ def add_line(file: FileIO, line: str, *, lasting: bool = False) -> None:
             left = left[file.write(left) :]
         if lasting:
             os.fsync(file.fileno())
-    except BaseException:
-        file.truncate(whole)
+    except BaseException as error:
+        if left or isinstance(error, OSError):
+            file.truncate(whole)
         raise
 
 

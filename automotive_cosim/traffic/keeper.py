@@ -20,6 +20,7 @@ import tempfile
 import threading
 import time
 from collections import OrderedDict
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
@@ -249,13 +250,22 @@ def _connected() -> socket.socket:
     address = _address(_program())
     connection = socket.socket(socket.AF_UNIX)
     try:
-        connection.connect(str(address))
+        _at(address, connection.connect)
         if not _is_own(connection):
             raise SetupError(f"{address} is not answered by you; remove it")
     except BaseException:
         connection.close()
         raise
     return connection
+
+
+def _at(address: Path, use: Callable[[str], None]) -> None:
+    """Connects or binds a socket, whose own path may be too long for one (107 bytes): by its folder, opened."""
+    home = os.open(address.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        use(f"/proc/self/fd/{home}/{address.name}")
+    finally:
+        os.close(home)
 
 
 _CHILDREN: list[subprocess.Popen[bytes]] = []
@@ -287,7 +297,7 @@ def main() -> None:
     with suppress(UserError), locked(address.with_suffix(".lock"), "warm traffic"):
         remove(address)
         with socket.socket(socket.AF_UNIX) as listening:
-            listening.bind(str(address))
+            _at(address, listening.bind)
             listening.listen()
             print("listening", flush=True)
             _Keeper(float(sys.argv[2])).serve(listening)

@@ -6,6 +6,7 @@ from collections import Counter
 
 import pytest
 
+from automotive_cosim.tasking.dialogue import LOOK_FIRST
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import HELD, Instance, draw, instances
 from automotive_cosim.tasking.task import Task
@@ -31,8 +32,8 @@ def space(task: Task) -> int:
 
 
 def words(instance):
-    """The goal without the seat that it comes from."""
-    return re.sub(r"^From the [a-z ]+ seat: ", "", instance.goal)
+    """The goal without the seat that it comes from, and without where one may look."""
+    return re.sub(r"^From the [a-z ]+ seat: ", "", instance.goal).removesuffix(f" {LOOK_FIRST}")
 
 
 @pytest.mark.parametrize("number", NUMBERS)
