@@ -143,6 +143,20 @@ class Order(StrEnum):
         return self is Order.FULL
 
 
+class Hear(StrEnum):
+    """How the words of the people in the car reach the agent."""
+
+    TEXT = "text"
+    """As they were said."""
+    CABIN = "cabin"
+    """As a recogniser made them out in the noise of that instant (``voice``)."""
+
+    @property
+    def is_by_ear(self) -> bool:
+        """Whether the cabin's sound counts, in both directions."""
+        return self is not Hear.TEXT
+
+
 class PromptLength(StrEnum):
     """How much of the same facts the prompt of T3A, M3A and ASURADA spells out.
 

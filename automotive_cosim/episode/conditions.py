@@ -23,6 +23,7 @@ from automotive_cosim.contracts.given import (
     Clock,
     FeedbackDetail,
     GeoInput,
+    Hear,
     Interface,
     Language,
     Order,
@@ -145,6 +146,17 @@ class Conditions:
     ] = Order.PLAIN  # fmt: skip
     """What the driver of a drive asks for: in a sentence (``plain``), as before a drive (``usual``), or with every
     threshold (``full``)."""
+    hear: Annotated[
+        Hear,
+        OneOf(Hear, "way to hear"),
+        Words(
+            "Hears", "hears by {}", "hear_{}", "Success by how the agent hears",
+            "What people in the car say reaches the agent as text, or as a recogniser made it out in the noise of "
+            "that instant (cabin); then speaking takes its time, and the driver may not hear it either.",
+        ),
+    ] = Hear.TEXT  # fmt: skip
+    """How the driver's words reach the agent: as they are (``text``), or as a recogniser makes them out in the
+    noise of the cabin (``cabin``)."""
 
     prompt: Annotated[
         PromptLength,

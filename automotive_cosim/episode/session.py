@@ -44,8 +44,10 @@ from automotive_cosim.interface import trace
 from automotive_cosim.interface.controls import Shown, shown
 from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
-from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
+from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, asks_again, spoken_s
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
+from automotive_cosim.voice.cabin import driver_snr_db, is_understood, level_db
+from automotive_cosim.voice.table import heard
 
 R = TypeVar("R")
 TakesTime: TypeAlias = Generator[float, None, R]
@@ -95,7 +97,9 @@ class Session:
     thought_s: float = 0.0
     """Simulated seconds that have passed since the agent last saw the screen."""
     heard: tuple[str, ...] = ()
-    """What the driver has said since the beginning."""
+    """What the driver has said since the beginning, as it has reached the agent."""
+    remarks: tuple[str, ...] = ()
+    """What the driver has said unasked since the beginning."""
     hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
     """Hash of the steps so far, computed when asked for."""
     _roads: Roads | None = field(default=None, repr=False)
@@ -152,11 +156,7 @@ class Session:
         if why := self._barred(action):
             yield from self.refusing(why)
             return
-        feedback, cost_s = self._answer(action) or (self._performed(action), 0.0)
-        said: tuple[str, ...] = ()
-        if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
-            said = (self._reply(action.text or ""),)
-            cost_s = spoken_s(action.text or "", *said)
+        feedback, cost_s, said = self._by_ear(action) or self._done(action)
         if action.action_type is ActionType.STATUS:
             self.declared, self.reason = action.goal_status, action.reason
         yield from self._proceed(action, feedback, cost_s, said)
@@ -211,8 +211,8 @@ class Session:
 
     @property
     def said(self) -> tuple[str, ...]:
-        """Every answer of the agent to the driver."""
-        actions = (step.action for step in self.steps)
+        """Every answer of the agent to the driver that he understood."""
+        actions = (step.action for step in self.steps if PARDON not in step.said)
         return tuple(each.text or "" for each in actions if each and each.action_type is ActionType.ANSWER)
 
     @property
@@ -248,6 +248,42 @@ class Session:
         if action.action_type in BY_HAND and not interface.touches:
             return "the screen cannot be touched here; call a function"
         return ""
+
+    def _done(self, action: Action) -> tuple[Feedback, float, tuple[str, ...]]:
+        """The feedback to an action, the seconds that it takes besides its own, and what the driver says to it."""
+        feedback, cost_s = self._answer(action) or (self._performed(action), 0.0)
+        if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
+            reply = self._reply(action.text or "")
+            return feedback, spoken_s(action.text or "", reply), (reply,)
+        is_slow = self._hears and action.action_type is ActionType.ANSWER
+        return feedback, spoken_s(action.text or "") if is_slow else cost_s, ()
+
+    def _by_ear(self, action: Action) -> tuple[Feedback, float, tuple[str, ...]] | None:
+        """As ``_done``, of words to a driver who does not understand them, or who shall repeat his own: nothing is
+        done."""
+        text = action.text or ""
+        if not self._hears or action.action_type not in (ActionType.ASK_DRIVER, ActionType.ANSWER):
+            return None
+        if not self._is_understood:
+            said: tuple[str, ...] = (PARDON,)
+        elif action.action_type is ActionType.ASK_DRIVER and asks_again(text) and not self._is_topic(text):
+            said = (self.goal, *self.remarks)
+        else:
+            return None
+        return Feedback(FeedbackCode.OK, ""), spoken_s(text, *said), said
+
+    @property
+    def _hears(self) -> bool:
+        return self.setup.conditions.hear.is_by_ear
+
+    @property
+    def _is_understood(self) -> bool:
+        """Whether the driver understands what the car says now."""
+        return not self._hears or is_understood(self.world.moment)
+
+    def _is_topic(self, question: str) -> bool:
+        """Whether the driver has an answer to it."""
+        return False
 
     def _performed(self, action: Action) -> Feedback:
         """The cockpit's feedback to an action; an agent without a list has no index to name."""
@@ -285,12 +321,15 @@ class Session:
     ) -> TakesTime[None]:
         """Lets the action's time pass, plus ``cost_s``; the driver says ``said`` and what he has to say besides."""
         feedback = yield from self._spend(action, feedback, cost_s)
-        said += self._remarks()
-        self.heard += said
+        remarks = self._remarks()
+        self.remarks += remarks
+        said += remarks
+        reached = reaching(said, self.setup, self.world.moment)
+        self.heard += reached
         begun_s = self.moments[0].time_s
         self.elements, self.observation = _seen(
             self.world,
-            self.goal,
+            self.observation.goal,
             self._channels(action),
             self.shown,
             begun_s,
@@ -299,9 +338,13 @@ class Session:
             self.setup.conditions.policy,
             lean=self.setup.lean,
         )
+        moment = self.world.moment
         self.steps.append(
-            trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s, said)
-        )
+            trace.Step(
+                len(self.steps), moment, self.elements, action, feedback, self.thought_s, said,
+                *((reached, level_db(moment)) if self._hears else ()),
+            )
+        )  # fmt: skip
         self.thought_s = 0.0
         end = self._ended()
         if end is not None:
@@ -354,12 +397,13 @@ def beginning(
     world: CoSimulation, goal: str, setup: SessionSetup, drive: Sequence[Moment], observer: Observer | None
 ) -> dict[str, Any]:
     """The fields of a session that begins now, on the screen that its conditions ask for."""
-    first = world.moment
+    first, is_by_ear = world.moment, setup.conditions.hear.is_by_ear
+    (wish,) = reaching((goal,), setup, first)
     world.cockpit.fit(setup.conditions.screen)
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
     elements, observation = _seen(
-        world, goal, setup.given, told, first.time_s, feedback, policy=setup.conditions.policy, lean=setup.lean
+        world, wish, setup.given, told, first.time_s, feedback, policy=setup.conditions.policy, lean=setup.lean
     )
     return {
         "world": world,
@@ -371,8 +415,29 @@ def beginning(
         "moments": [first],
         "elements": elements,
         "observation": observation,
-        "steps": [trace.Step(0, first, elements, None, feedback)],
+        "steps": [
+            trace.Step(
+                0,
+                first,
+                elements,
+                None,
+                feedback,
+                **({"heard": (wish,), "cabin_db": level_db(first)} if is_by_ear else {}),
+            )
+        ],
     }
+
+
+def reaching(said: tuple[str, ...], setup: SessionSetup, moment: Moment) -> tuple[str, ...]:
+    """What reaches the agent of words that are said at a moment.
+
+    Raises:
+        InfrastructureError: they have not been recognised yet, and the extra ``voice`` is missing.
+    """
+    if not setup.conditions.hear.is_by_ear:
+        return said
+    snr_db = driver_snr_db(level_db(moment))
+    return tuple(heard(text, snr_db) for text in said)
 
 
 def _seen(
