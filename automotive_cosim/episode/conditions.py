@@ -52,6 +52,8 @@ class Words:
     """What its values mean, below that table."""
     is_speed: bool = False
     """Whether it is about how fast the agent answers, and not about what it is given."""
+    is_rare: bool = False
+    """Whether rows leave its default out: it came later than rows on record."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -153,6 +155,7 @@ class Conditions:
             "Hears", "hears by {}", "hear_{}", "Success by how the agent hears",
             "What people in the car say reaches the agent as text, or as a recogniser made it out in the noise of "
             "that instant (cabin); then speaking takes its time, and the driver may not hear it either.",
+            is_rare=True,
         ),
     ] = Hear.TEXT  # fmt: skip
     """How the driver's words reach the agent: as they are (``text``), or as a recogniser makes them out in the

@@ -18,6 +18,7 @@ from automotive_cosim.drives.order import ordered
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON
 from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.voice import table
 
@@ -26,14 +27,15 @@ BATCH = 20
 
 
 def wanted(seeds: int) -> Iterator[str]:
-    """Everything that is said at these seeds, apart from wishes with content of the cockpit; what comes first is
-    said in every task."""
+    """Everything that is said at these seeds, apart from wishes with content of the cockpit; what is said
+    everywhere, and the suite of the cabin, come first."""
     yield from (NEUTRAL, PARDON)
     for order in Order:
         for with_errands in (False, True):
             yield ordered(order, Language.ENGLISH, with_errands=with_errands)
+    tasks = sorted(CATALOGUE.values(), key=lambda task: task.suite is not Suite.VOICE)
     for number in range(seeds):
-        for task in CATALOGUE.values():
+        for task in tasks:
             for name in task.halves:
                 try:
                     instance = draw(task, name, number)

@@ -27,7 +27,8 @@ of an ambulance as the insulation of a car (Oliveira et al. 2013, Building Acous
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
 from automotive_cosim.cockpit.signals import CABIN, CALL, HVAC, MEDIA, VOICE
 from automotive_cosim.contracts.plain import KMH_PER_MPS
@@ -52,16 +53,23 @@ LOMBARD, LOMBARD_DB = 0.3, 40.0
 CLOSE_DB = 6.0
 """The microphone is half a metre away."""
 LOUDSPEAKER_DB = 66.0
-"""The car's voice at half its volume, at the driver's ear: a raised voice (ISO 9921:2003). It rises with the noise as
-people's voices do, as cars with speed-dependent volume have it."""
+"""The car's voice at half its volume, at the driver's ear: a raised voice (ISO 9921:2003). It rises with the noise
+as people's voices do, as cars with speed-dependent volume have it."""
 UNDERSTOOD = 0.45
 """Speech intelligibility index below which communication is poor (ANSI S3.5-1997)."""
 
 
 def sources(moment: Moment) -> Iterator[tuple[str, float]]:
     """What is heard in the cabin, and each level in dB(A)."""
-    signals, kmh = moment.signals, moment.driving.speed_mps * KMH_PER_MPS
-    rain_mm_h = moment.weather.precipitation
+    siren = moment.driving.around.emergency_behind
+    kmh, rain_mm_h = moment.driving.speed_mps * KMH_PER_MPS, moment.weather.precipitation
+    return levels(moment.signals, kmh, rain_mm_h, None if siren is None else siren.gap_m)
+
+
+def levels(
+    signals: Mapping[str, Any], kmh: float, rain_mm_h: float = 0.0, siren_m: float | None = None
+) -> Iterator[tuple[str, float]]:
+    """As ``sources``, by the values of signals, and by what is outside."""
     opened = sum(signals[each.path] for each in OPENINGS) / 100
     yield "at rest", REST_DB
     if kmh > 1:
@@ -77,14 +85,19 @@ def sources(moment: Moment) -> Iterator[tuple[str, float]]:
         yield "media", 80 + 40 * math.log10(volume / 100)
     if signals[CALL.PARTNER.path]:
         yield "a call", 65.0
-    if (siren := moment.driving.around.emergency_behind) is not None:
+    if siren_m is not None:
         through = 10 * math.log10(10**-2.3 + opened / len(OPENINGS))
-        yield "siren", 102 - 20 * math.log10(max(siren.gap_m, 3.0) / 30) + min(0.0, through)
+        yield "siren", 102 - 20 * math.log10(max(siren_m, 3.0) / 30) + min(0.0, through)
 
 
 def level_db(moment: Moment) -> float:
     """How loud the cabin is, dB(A)."""
-    return 10 * math.log10(sum(10 ** (level / 10) for _, level in sources(moment)))
+    return summed_db(sources(moment))
+
+
+def summed_db(found: Iterable[tuple[str, float]]) -> float:
+    """Sources together, by their energy, dB(A)."""
+    return 10 * math.log10(sum(10 ** (level / 10) for _, level in found))
 
 
 def driver_snr_db(noise_db: float) -> float:

@@ -30,7 +30,7 @@ NOTHING = "[inaudible]"
 """What an agent reads where nothing was recognised."""
 MOST_WORDS = 40
 """Of a piece that is said in one go: at 150 words a minute half of the half minute that the recogniser takes."""
-_FROM = re.compile(r"From the [a-z ]+ seat: ")
+_FROM = re.compile(r"From the ([a-z ]+ seat|loudspeakers): ")
 """Where a voice comes from that is not the driver's, which no recogniser has to tell."""
 _SENTENCE = re.compile(r"(?<=[.!?]) +")
 
@@ -69,6 +69,17 @@ def recognise(texts: Sequence[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
     """
     for text, sound in zip(texts, engines.said(texts), strict=True):
         yield text, tuple(engines.recognised(engines.in_cabin(sound, level, text)) for level in LEVELS_DB)
+
+
+def word_errors(said: str, made_out: str) -> tuple[int, int]:
+    """Words that are missing, wrong or too many (Levenshtein), and the number of words that were said."""
+    one, other = (re.findall(r"\w+", text.casefold()) for text in (said, made_out))
+    row = list(range(len(other) + 1))
+    for count, word in enumerate(one, start=1):
+        last, row = row, [count]
+        for at, found in enumerate(other, start=1):
+            row.append(min(last[at] + 1, row[at - 1] + 1, last[at - 1] + (word != found)))
+    return row[-1], len(one)
 
 
 def read(path: Path = TABLE) -> Mapping[str, tuple[str, ...]]:
