@@ -419,7 +419,7 @@ class AskedBack:
 
     @property
     def writes(self) -> frozenset[str]:
-        return frozenset({"questions"})
+        return frozenset()  # it may be asked again: the answer, too, has to be heard
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the first moment after such a question is as the start but for the noise."""
@@ -427,7 +427,7 @@ class AskedBack:
             if self.topic.fits(asked["text"]):
                 then = next(moment for moment in trace if len(questions(start, moment)) >= count)
                 changed = {key for key, value in then.commands.items() if value != start.commands.get(key)}
-                return changed <= QUIETING | self.writes
+                return changed <= QUIETING | {"questions"}
         return False
 
     def __str__(self) -> str:

@@ -35,8 +35,8 @@ _TOKEN = re.compile(rf"[{_JAPANESE}]|[^\W{_JAPANESE}]+")
 
 
 _AGAIN = re.compile(
-    r"\b(repeat|again|pardon|once more|say that|did you say"
-    r"|(not|n't|cannot) (hear|catch|understand|get) (you|that|it))\b"
+    r"\b(repeat|again|pardon|once more|say that|did you say)\b"
+    r"|(not|n't) (hear|catch|understand|get) (you|that|it)\b"
 )
 
 
