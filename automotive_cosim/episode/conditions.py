@@ -23,7 +23,7 @@ from automotive_cosim.contracts.given import (
     Clock,
     FeedbackDetail,
     GeoInput,
-    Hear,
+    Hearing,
     Interface,
     Language,
     Order,
@@ -149,17 +149,17 @@ class Conditions:
     """What the driver of a drive asks for: in a sentence (``plain``), as before a drive (``usual``), or with every
     threshold (``full``)."""
     hear: Annotated[
-        Hear,
-        OneOf(Hear, "way to hear"),
+        Hearing,
+        OneOf(Hearing, "way to hear"),
         Words(
             "Hears", "hears by {}", "hear_{}", "Success by how the agent hears",
             "What people in the car say reaches the agent as text, or as a recogniser made it out in the noise of "
-            "that instant (cabin); then speaking takes its time, and the driver may not hear it either.",
+            "that instant (cabin), or as sound (audio); then speaking takes time, and the driver may not hear it.",
             is_rare=True,
         ),
-    ] = Hear.TEXT  # fmt: skip
-    """How the driver's words reach the agent: as they are (``text``), or as a recogniser makes them out in the
-    noise of the cabin (``cabin``)."""
+    ] = Hearing.TEXT  # fmt: skip
+    """How the driver's words reach the agent: as they are (``text``), as a recogniser makes them out in the
+    noise of the cabin (``cabin``), or as sound in it (``audio``)."""
 
     prompt: Annotated[
         PromptLength,

@@ -31,7 +31,7 @@ from automotive_cosim.contracts import (
     Reason,
     RoadNetwork,
 )
-from automotive_cosim.contracts.given import ToldPolicy
+from automotive_cosim.contracts.given import Hearing, ToldPolicy
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.episode.observer import Observer
@@ -47,7 +47,7 @@ from automotive_cosim.interface.observe import Channel, observe
 from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, asks_again, spoken_s
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
 from automotive_cosim.voice.cabin import driver_snr_db, is_understood, level_db
-from automotive_cosim.voice.table import heard
+from automotive_cosim.voice.table import SPOKEN, came_from, heard, sounding
 
 R = TypeVar("R")
 TakesTime: TypeAlias = Generator[float, None, R]
@@ -337,6 +337,7 @@ class Session:
             self.heard,
             self.setup.conditions.policy,
             lean=self.setup.lean,
+            sounds=(*self.observation.sounds, *_sounds(said, self.setup, self.world.moment)),
         )
         moment = self.world.moment
         self.steps.append(
@@ -399,11 +400,20 @@ def beginning(
     """The fields of a session that begins now, on the screen that its conditions ask for."""
     first, is_by_ear = world.moment, setup.conditions.hear.is_by_ear
     (wish,) = reaching((goal,), setup, first)
+    reached: tuple[Any, ...] = ((wish,), level_db(first)) if is_by_ear else ()
     world.cockpit.fit(setup.conditions.screen)
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
     elements, observation = _seen(
-        world, wish, setup.given, told, first.time_s, feedback, policy=setup.conditions.policy, lean=setup.lean
+        world,
+        wish,
+        setup.given,
+        told,
+        first.time_s,
+        feedback,
+        policy=setup.conditions.policy,
+        lean=setup.lean,
+        sounds=_sounds((goal,), setup, first),
     )
     return {
         "world": world,
@@ -415,16 +425,7 @@ def beginning(
         "moments": [first],
         "elements": elements,
         "observation": observation,
-        "steps": [
-            trace.Step(
-                0,
-                first,
-                elements,
-                None,
-                feedback,
-                **({"heard": (wish,), "cabin_db": level_db(first)} if is_by_ear else {}),
-            )
-        ],
+        "steps": [trace.Step(0, first, elements, None, feedback, 0.0, (), *reached)],
     }
 
 
@@ -436,8 +437,17 @@ def reaching(said: tuple[str, ...], setup: SessionSetup, moment: Moment) -> tupl
     """
     if not setup.conditions.hear.is_by_ear:
         return said
+    if setup.conditions.hear is Hearing.AUDIO:
+        return tuple(came_from(text) + SPOKEN for text in said)
     snr_db = driver_snr_db(level_db(moment))
     return tuple(heard(text, snr_db) for text in said)
+
+
+def _sounds(said: tuple[str, ...], setup: SessionSetup, moment: Moment) -> tuple[bytes, ...]:
+    """The same as sound, for an agent that gets it."""
+    if setup.conditions.hear is not Hearing.AUDIO:
+        return ()
+    return tuple(sounding(text, driver_snr_db(level_db(moment))) for text in said)
 
 
 def _seen(
@@ -451,10 +461,11 @@ def _seen(
     policy: ToldPolicy = ToldPolicy.NONE,
     *,
     lean: bool = False,
+    sounds: tuple[bytes, ...] = (),
 ) -> tuple[tuple[Element, ...], Observation]:
     """The elements on the screen, and the agent's observation."""
     elements = () if lean else world.cockpit.elements()
-    seen = observe(world, goal, begun_s, elements, feedback, channels, said, policy)
+    seen = observe(world, goal, begun_s, elements, feedback, channels, said, policy, sounds)
     return elements, told.observation(seen, world.moment)
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from automotive_cosim.contracts.given import Language, Order
@@ -19,6 +20,7 @@ from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.voice import table
 
@@ -36,17 +38,16 @@ def wanted(seeds: int) -> Iterator[str]:
     tasks = sorted(CATALOGUE.values(), key=lambda task: task.suite is not Suite.VOICE)
     for number in range(seeds):
         for task in tasks:
-            for name in task.halves:
-                try:
-                    instance = draw(task, name, number)
-                except UnknownNameError:
-                    continue
-                half = instance.half
-                yield from (
-                    instance.goal,
-                    *(each.text for each in half.says),
-                    *(each.reply for each in half.topics),
-                )
+            yield from said_in(task, number)
+
+
+def said_in(task: Task, number: int) -> Iterator[str]:
+    """The wish, remarks and answers of an instance of a task."""
+    for name in task.halves:
+        with suppress(UnknownNameError):
+            instance = draw(task, name, number)
+            half = instance.half
+            yield from (instance.goal, *(each.text for each in half.says), *(each.reply for each in half.topics))
 
 
 def missing(seeds: int, path: Path = table.TABLE) -> list[str]:

@@ -79,7 +79,7 @@ def in_cabin(sound: Sound, snr_db: float | None, key: str) -> Sound:
     Args:
         snr_db: A-weighted level of the words above that of the noise.
     """
-    apart = np.pad(sound, round(MARGIN_S * RATE_HZ))
+    apart: npt.NDArray[np.floating[Any]] = np.pad(sound, round(MARGIN_S * RATE_HZ))
     if snr_db is not None:
         seed = int.from_bytes(blake2b(key.encode(), digest_size=8).digest())
         noise = _noise(len(apart), np.random.default_rng(seed))

@@ -15,6 +15,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import write_whole
@@ -26,13 +28,25 @@ LEVELS_DB = (None, 5.0, 0.0, -5.0, -10.0)
 """Ratios of the A-weighted levels of words and noise at which the words were recognised; None is without noise."""
 CLEAN_DB = 10.0
 """The ratio that counts as without noise, when the nearest level is taken."""
-NOTHING = "[inaudible]"
-"""What an agent reads where nothing was recognised."""
+NOTHING, SPOKEN = "[inaudible]", "[spoken]"
+"""What an agent reads where nothing was recognised, and where it gets the sound."""
 MOST_WORDS = 40
 """Of a piece that is said in one go: at 150 words a minute half of the half minute that the recogniser takes."""
 _FROM = re.compile(r"From the ([a-z ]+ seat|loudspeakers): ")
 """Where a voice comes from that is not the driver's, which no recogniser has to tell."""
 _SENTENCE = re.compile(r"(?<=[.!?]) +")
+
+
+@lru_cache(maxsize=256)
+def sounding(text: str, snr_db: float) -> bytes:
+    """An English text as it sounds at a ratio of words to noise, as a WAV file.
+
+    Raises:
+        SetupError: the extra is missing.
+    """
+    every = list(pieces(text))
+    said = (engines.in_cabin(sound, snr_db, piece) for piece, sound in zip(every, engines.said(every), strict=True))
+    return engines.as_wav(np.concatenate(list(said)))
 
 
 def heard(text: str, snr_db: float) -> str:
@@ -41,9 +55,7 @@ def heard(text: str, snr_db: float) -> str:
     Raises:
         InfrastructureError: the table does not have it, and the extra is missing.
     """
-    prefix = _FROM.match(text)
-    start = prefix[0] if prefix else ""
-    return start + " ".join(_heard(piece)[_column(snr_db)] or NOTHING for piece in pieces(text))
+    return came_from(text) + " ".join(_heard(piece)[_column(snr_db)] or NOTHING for piece in pieces(text))
 
 
 def pieces(text: str) -> Iterator[str]:
@@ -57,7 +69,7 @@ def pieces(text: str) -> Iterator[str]:
             piece = []
         piece.append(sentence)
     yield " ".join(piece)
-    if rest != text:
+    if text.endswith(LOOK_FIRST):
         yield LOOK_FIRST
 
 
@@ -106,6 +118,12 @@ def write(table: Mapping[str, tuple[str, ...]], path: Path = TABLE) -> None:
 
 
 _shipped = cache(read)
+
+
+def came_from(text: str) -> str:
+    """Where a voice comes from that is not the driver's; empty if it is."""
+    found = _FROM.match(text)
+    return found[0] if found else ""
 
 
 @lru_cache(maxsize=4096)

@@ -10,7 +10,7 @@ import pytest
 
 from automotive_cosim.cockpit.signals import ENERGY, HVAC, TYRE
 from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus
-from automotive_cosim.contracts.given import Hear, Language
+from automotive_cosim.contracts.given import Hearing, Language
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.conditions import Conditions
@@ -314,7 +314,7 @@ def test_what_the_driver_says_is_in_the_trace(talk):
     assert "said" not in quiet.steps[-1].as_json()
 
 
-BY_EAR = replace(BLIND, conditions=Conditions(hear=Hear.CABIN))
+BY_EAR = replace(BLIND, conditions=Conditions(hear=Hearing.CABIN))
 PARDONED = Action(ActionType.ASK_DRIVER, text="Pardon, could you say that again?")
 
 
@@ -371,7 +371,7 @@ def test_words_as_text_leave_no_trace_of_the_cabin(talk):
 
 def test_there_is_no_voice_in_other_languages():
     with pytest.raises(UserError, match="--hear cabin has no voice in French; give --language en, or --hear text"):
-        SessionSetup(conditions=Conditions(hear=Hear.CABIN, language=Language.FRENCH))
+        SessionSetup(conditions=Conditions(hear=Hearing.CABIN, language=Language.FRENCH))
 
 
 def test_a_session_without_a_task_gets_an_answer_that_does_not_help(begin):
