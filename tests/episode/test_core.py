@@ -362,6 +362,19 @@ def test_by_ear_speaking_takes_its_time_and_who_is_not_understood_is_asked_again
     assert not episode.questions
 
 
+def test_by_sound_the_agent_gets_every_word_as_sound_and_no_text(talk, monkeypatch):
+    monkeypatch.setattr("automotive_cosim.episode.session.sounding", lambda text, snr_db: f"RIFF {text}".encode())
+    episode = talk(
+        Says("From the rear left seat: Hurry up.", step=1),
+        setup=replace(BLIND, conditions=Conditions(hear=Hearing.AUDIO)),
+    )
+    wish = episode.instance.goal
+    assert (episode.observation.goal, episode.observation.sounds) == ("[spoken]", (f"RIFF {wish}".encode(),))
+    episode.step(WAIT)
+    assert episode.observation.said == ("From the rear left seat: [spoken]",)
+    assert episode.observation.sounds[1:] == (b"RIFF From the rear left seat: Hurry up.",)
+
+
 def test_words_as_text_leave_no_trace_of_the_cabin(talk):
     episode = talk()
     episode.step(PARDONED)
