@@ -17,11 +17,12 @@ Sources, in that order: a parked electric car (an assumption); the middle of wha
 (2010 to 2012: 58 to 78 dB(A)), with the slope of rolling noise in CNOSSOS-EU (Directive (EU) 2015/996), and
 what a wet road adds to tyres (Sandberg and Ejsmont 2002, 1 to 5 dB); cars with an open roof (Mikulec et al.
 2011, J. Laryngol. Otol. 125: 85.3 dB at 88.5 km/h, 89.9 at 120.7), an opening counting as a fifth of it (an
-assumption); the slope of rain on a roof (Dubout 1969, Applied Acoustics 2) from 45 dB(A) (an assumption); the
-fan law of 50 lg (ASHRAE Handbook, HVAC Applications), from 65 dB(A) at full blower (an assumption of the size
-in Mavuri et al. 2008, SAE World Congress); volume as an audio taper, and voices on a phone as loud as a raised
-voice (assumptions); sirens (Flesch et al. 1986, NIOSHTIC 00177994: 99 to 105 dB(A) at 100 feet), and the side
-of an ambulance as the insulation of a car (Oliveira et al. 2013, Building Acoustics 20: 23 dB(A)).
+assumption); rain by the logarithm of its rate, as measured under roofs in natural rain (Applied Acoustics,
+2016), with 45 dB(A) and 17 as assumptions; the fan law of 50 lg (ASHRAE Handbook, HVAC Applications), from 65
+dB(A) at full blower (an assumption of the size in Mavuri et al. 2008, SAE World Congress); volume as an audio
+taper, and voices on a phone as loud as a raised voice (assumptions); sirens (Flesch et al. 1986, NIOSHTIC
+00177994: 99 to 105 dB(A) at 100 feet), and the side of an ambulance as the insulation of a car (Oliveira et al.
+2013, Building Acoustics 20: 23 dB(A)).
 """
 
 from __future__ import annotations
