@@ -170,7 +170,7 @@ class Car:
             signals=self.cockpit.signals.snapshot(),
             commands=self.cockpit.commands(),
             sights=self.cockpit.sights,
-            awareness=None if self.attention is None else self.attention.awareness,
+            awareness=None if self.attention is None else self.attention.told,
             asked=tuple(errand for errand in self.errands if errand.at_s <= driving.time_s + 1e-6),
         )
 

@@ -47,7 +47,7 @@ def harm(drive: Sequence[Moment]) -> Harm:
             over_s += dt_s
             over_m += excess_kmh / KMH_PER_MPS * dt_s
         short_s += dt_s if is_near(now.driving) else 0.0
-        unaware_s += (1.0 - (before.awareness or 1.0)) * dt_s
+        unaware_s += (1.0 - (now.awareness or 1.0)) * dt_s
     first, last = drive[0], drive[-1]
     return Harm(
         driven_s=last.time_s - first.time_s,

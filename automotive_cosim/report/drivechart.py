@@ -291,7 +291,7 @@ def _gaps(axes: Axes, timeline: Json) -> None:
 
 def _awareness(axes: Axes, timeline: Json) -> None:
     """How much of the driver's attention is on the road."""
-    axes.fill_between(timeline["time_s"], timeline["awareness"], 1.0, step="post", color=VERMILION, alpha=0.5)
+    axes.fill_between(timeline["time_s"], timeline["awareness"], 1.0, step="pre", color=VERMILION, alpha=0.5)
     axes.set_ylim(0, 1)
     axes.set_yticks([0, 1])
     axes.set_ylabel("aware")
