@@ -3,8 +3,8 @@
     python benchmarks/attention.py --keep runs/attention                # 50 drives by 4 agents; resumes
     python benchmarks/attention.py --keep runs/attention --for-s 240    # no drive begins later than that
 
-The four agents drive the same drives of three minutes: the same traffic, events and driver. What differs from silence
-is what the agent did, so the table gives differences, drive by drive, with 95 % intervals from resampling drives.
+The four agents drive the same drives of three minutes: the same dense traffic, event and driver. What differs from
+silence is what the agent did: the table has differences, drive by drive, with 95 % intervals from resampling.
 """
 
 from __future__ import annotations
@@ -38,6 +38,12 @@ MINUTES = 3.0
 FOLLOWS_S = 3.0
 """A car that is nearer to the one ahead follows it."""
 RESAMPLED = 2000
+REMARK = "There is a place on the left that is known for its fish, and its terrace is open until ten tonight."
+QUESTION = "Would you like me to tell you more about what one can see around here?"
+DOCK = frozenset({"dock.map", "dock.phone", "dock.climate", "dock.media"})
+STAGED = ("leader_brakes", "jam_tail", "tractor", "cut_in", "over_limit", "leader_stops")
+"""What is staged after a minute, a drive each in turn."""
+DENSITY = 2.0
 ON = Conditions.named({"attention": "on"})
 
 
@@ -56,9 +62,7 @@ class Chatty(Silent):
             return Action(ActionType.WAIT, seconds=5)
         if self._turn % 4:
             return Action(ActionType.ANSWER, text=REMARK)
-        return Action(
-            ActionType.ASK_DRIVER, text="Would you like me to tell you more about what one can see around here?"
-        )
+        return Action(ActionType.ASK_DRIVER, text=QUESTION)
 
 
 class Flickering(Silent):
@@ -74,12 +78,8 @@ class Flickering(Silent):
         """A touch of the next button of the dock."""
         self._turn += 1
         keys = [(key_of(each.resource_id), index) for index, each in enumerate(observation.elements or ())]
-        dock = [index for key, index in keys if key in ("dock.map", "dock.phone", "dock.climate", "dock.media")]
-        return (
-            Action(ActionType.CLICK, index=dock[self._turn % len(dock)])
-            if dock
-            else Action(ActionType.NAVIGATE_HOME)
-        )
+        dock = [index for key, index in keys if key in DOCK]
+        return Action(ActionType.CLICK, index=dock[self._turn % len(dock)]) if dock else Action(ActionType.WAIT)
 
 
 AGENTS: Mapping[str, Callable[[], RulePerfect | Silent]] = {
@@ -123,7 +123,8 @@ def _step_s(states: Sequence[object]) -> float:
 def played(family: str, seed: int, who: str, simulations: Simulations) -> dict[str, float]:
     """The figures of one drive with one agent."""
     agent = AGENTS[who]()
-    spec = DriveSpec(family, seed, ON, settings=DriveSettings(minutes=MINUTES))
+    settings = DriveSettings(minutes=MINUTES, density=DENSITY, stage=STAGED[seed % len(STAGED)])
+    spec = DriveSpec(family, seed, ON, settings=settings)
     with closing(spec.begin(simulations, agent.channels)) as session:
         session.judged = False
         agent.reset(session.goal)

@@ -195,6 +195,7 @@ class DriverAttention(StrEnum):
     OFF = "off"
     """The driver is attentive whatever happens."""
     ON = "on"
+    """It does (``cosim.attention``)."""
 
     @property
     def is_limited(self) -> bool:
