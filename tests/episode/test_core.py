@@ -336,7 +336,7 @@ def test_by_ear_the_noise_of_the_instant_decides_and_the_driver_repeats_what_he_
     assert episode.steps[1].said == (wish, "Hurry up.")
     assert episode.observation.said == (f"{wish} ({now_db:.1f})", f"Hurry up. ({now_db:.1f})")
     assert not episode.questions
-    # What the agent does to the cabin is heard at once: with the blower at full speed, the same words are less clear.
+    # What the agent does to the cabin is heard at once: with more of the blower, the same words are less clear.
     episode.step(Action(ActionType.OPEN_APP, app_name="climate"))
     fan = next(i for i, each in enumerate(episode.elements) if each.resource_id == shown_id("hvac.fan.max"))
     episode.step(Action(ActionType.CLICK, index=fan))
