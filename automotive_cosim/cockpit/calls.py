@@ -93,7 +93,7 @@ def _lines(state: State) -> Iterator[str]:
         made = equipped(state, page.made(state))
         whole = Screen(
             rect=state.size.whole,
-            dock=state.size.dock,
+            dock=state.frame.dock,
             night=False,
             children=tuple(translated(widget, language) for widget in made),
         )

@@ -1,0 +1,105 @@
+"""Screens of a make's own: its menus, and controls of home's screens in another arrangement.
+
+Nothing is made twice: a control is taken from the screen that has it at home, with all that it does, and put into
+another box.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import TypeVar
+
+from automotive_cosim.cockpit.app import AppPage
+from automotive_cosim.cockpit.cards import back, content, heading, rows, title
+from automotive_cosim.cockpit.flow import Block, BlockPart, at, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.layout import REST
+from automotive_cosim.cockpit.make import Control, Place
+from automotive_cosim.cockpit.messages import Show
+from automotive_cosim.cockpit.registry import pages
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.tree import named
+from automotive_cosim.cockpit.widgets import Button, Choice, Label, Row, Slider, Tile, Widget
+from automotive_cosim.contracts.text import Text
+
+W = TypeVar("W", bound=Widget)
+LINE_HEIGHT, LINE_GAP = 84, 8
+
+
+def page_of(state: State) -> AppPage:
+    """The screen that is shown, as the make has it."""
+    place = state.make.screens.get(state.screen)
+    if place is None:
+        return pages()[state.screen]
+    return AppPage(partial(_menu if place.holds else _shelves, state.screen, place), Room.TWO)
+
+
+def moved(widget: W, across: int) -> W:
+    """The widget and all in it so many pixels further to the right."""
+    if not across:
+        return widget
+    children = tuple(moved(child, across) for child in widget.children)
+    return replace(widget, rect=widget.rect.moved(across, 0), children=children)
+
+
+def _menu(screen: str, place: Place, state: State) -> tuple[Widget, ...]:
+    """The screens that it leads to."""
+    make, tiles = state.make, state.make.menus == "tiles"
+
+    def entry(index: int, name: str) -> Widget:
+        text, icon = named(make, name)
+        key, on_tap = f"{screen}.{name}", Show(name)
+        if tiles:
+            return Button(
+                key=key, text=text, icon=icon, icon_size=44, stacked=True, style=Type.STRONG, on_tap=on_tap
+            )
+        return Row(key=key, text=text, icon=icon, on_tap=on_tap)
+
+    columns, height = (3, 150) if tiles else (1, 72)
+    every = rows(f"{screen}.all", place.text, state, place.holds, entry, columns=columns, height=height, gap=GAP)
+    return _titled(screen, place, state, every)
+
+
+def _shelves(screen: str, place: Place, state: State) -> tuple[Widget, ...]:
+    """The controls that it shows."""
+    every = [part for shelf in place.shelves for part in _parts(shelf.of, shelf.controls, state)]
+    columns = 2 if content(state).width > 760 and len(every) > 5 else 1
+    listed = rows(
+        f"{screen}.all", place.text, state, every, lambda _, part: part, columns=columns, height=LINE_HEIGHT,
+        gap=LINE_GAP,
+    )  # fmt: skip
+    return _titled(screen, place, state, listed)
+
+
+def _titled(screen: str, place: Place, state: State, body: BlockPart) -> tuple[Widget, ...]:
+    head = line(title(Icon[place.icon], place.text, f"{screen}.title"), GAP, (160, back(screen)))
+    return fill(content(state), stack((48, head), GAP, (REST, body)))
+
+
+def _parts(of: str, controls: tuple[Control, ...], state: State) -> Iterator[Block]:
+    """The controls of a screen, each as a line."""
+    made = [widget for child in pages()[of].made(state) for widget in child.walk() if widget.key]
+    for key, *name in controls:
+        own = [each for each in made if each.key == key or each.key.startswith(f"{key}.")]
+        if own:
+            yield _line(own, Text(name[0], {}, "make") if name else "")
+
+
+def _line(own: list[Widget], name: str) -> Block:
+    """A control, after its name unless it shows it itself."""
+    labels = [each for each in own if isinstance(each, Label)]
+    touched = sorted((each for each in own if each.listens), key=lambda each: each.rect.x)
+    if all(isinstance(each, Choice) for each in touched):
+        control = framed(grid(len(touched), 4, *touched), (4, 4), look="raised")
+    elif labels:
+        first, *others = touched
+        control = line((64, first), replace(labels[0], style=Type.STRONG, align="centre"), *((64, each) for each in others))
+        name = name or labels[0].description
+    else:
+        control = grid(len(touched), GAP, *touched)
+        if not name and any(isinstance(each, Tile | Slider | Button) and each.text for each in touched):
+            return framed(control, (0, 6), look="none")
+    return framed(line(12, (REST, heading(name)), 8, (420, at(lambda box: box.inset(0, 8), control))), look="surface")
