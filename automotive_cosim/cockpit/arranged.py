@@ -13,7 +13,7 @@ from typing import TypeVar
 
 from automotive_cosim.cockpit.app import AppPage
 from automotive_cosim.cockpit.cards import back, content, heading, rows, title
-from automotive_cosim.cockpit.flow import Block, BlockPart, at, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, BlockPart, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.make import Control, Place
 from automotive_cosim.cockpit.messages import Show
@@ -21,12 +21,13 @@ from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.tree import named
+from automotive_cosim.cockpit.tree import named, shown_by
 from automotive_cosim.cockpit.widgets import Button, Choice, Label, Row, Slider, Tile, Widget
 from automotive_cosim.contracts.text import Text
 
 W = TypeVar("W", bound=Widget)
-LINE_HEIGHT, LINE_GAP = 84, 8
+LINE_HEIGHT, LINE_GAP, INSET = 84, 8, (12, 8)
+CONTROL_WIDTH = 392
 
 
 def page_of(state: State) -> AppPage:
@@ -82,17 +83,19 @@ def _titled(screen: str, place: Place, state: State, body: BlockPart) -> tuple[W
 def _parts(of: str, controls: tuple[Control, ...], state: State) -> Iterator[Block]:
     """The controls of a screen, each as a line."""
     made = [widget for child in pages()[of].made(state) for widget in child.walk() if widget.key]
-    for key, *name in controls:
-        own = [each for each in made if each.key == key or each.key.startswith(f"{key}.")]
+    for control in controls:
+        own = [each for each in made if shown_by(controls, each.key) is control]
         if own:
-            yield _line(own, Text(name[0], {}, "make") if name else "")
+            yield _line(own, Text(control[1], {}, "make") if control[1:] else "")
 
 
 def _line(own: list[Widget], name: str) -> Block:
     """A control, after its name unless it shows it itself."""
     labels = [each for each in own if isinstance(each, Label)]
+    if len(labels) == len(own):
+        return framed(replace(labels[0], style=Type.LABEL, align="left", lines=1), INSET)
     touched = sorted((each for each in own if each.listens), key=lambda each: each.rect.x)
-    if all(isinstance(each, Choice) for each in touched):
+    if touched and all(isinstance(each, Choice) for each in touched):
         control = framed(grid(len(touched), 4, *touched), (4, 4), look="raised")
     elif labels:
         first, *others = touched
@@ -101,5 +104,5 @@ def _line(own: list[Widget], name: str) -> Block:
     else:
         control = grid(len(touched), GAP, *touched)
         if not name and any(isinstance(each, Tile | Slider | Button) and each.text for each in touched):
-            return framed(control, (0, 6), look="none")
-    return framed(line(12, (REST, heading(name)), 8, (420, at(lambda box: box.inset(0, 8), control))), look="surface")
+            return framed(control, INSET)
+    return framed(line(4, (REST, heading(name)), 8, (CONTROL_WIDTH, control)), INSET)

@@ -260,7 +260,7 @@ def _dock(
         Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)}),
         make.frame(size),
     )
-    if frame.upright or not make.bar.quick:
+    if not make.has_quick:
         across = frame.dock.inset(SIDE_INSET, 8) if frame.upright else frame.dock.inset(MARGIN, 8)
         offered = entries(make)
         cells = across.rows(len(offered), 4) if frame.upright else across.columns(len(offered), 4)

@@ -13,13 +13,16 @@ from functools import lru_cache
 from gettext import GNUTranslations, NullTranslations
 from importlib.resources import files
 from io import BytesIO
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from automotive_cosim.cockpit.make import HOME, Make
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.given import Language as Language
 from automotive_cosim.contracts.text import Quantity, Text
+
+if TYPE_CHECKING:
+    from babel.messages.catalog import Catalog
 
 W = TypeVar("W", bound=Widget)
 
@@ -37,14 +40,24 @@ _OWN: Mapping[type[Widget], tuple[str, ...]] = {
 def catalogue(language: str) -> GNUTranslations:
     """The catalogue of a language other than English."""
     from babel.messages.mofile import write_mo  # takes a while to import, and English does without
-    from babel.messages.pofile import read_po
 
-    file = files("automotive_cosim.cockpit").joinpath("languages", f"{language}.po")
     compiled = BytesIO()
-    with file.open("rb") as texts:
-        write_mo(compiled, read_po(texts))
+    write_mo(compiled, _entries(language))
     compiled.seek(0)
     return GNUTranslations(compiled)
+
+
+def messages() -> frozenset[str]:
+    """All that the screens say, in English."""
+    ids = [entry.id for entry in _entries(Language.FRENCH)]
+    return frozenset(each if isinstance(each, str) else each[0] for each in ids)
+
+
+def _entries(language: str) -> Catalog:
+    from babel.messages.pofile import read_po
+
+    with files("automotive_cosim.cockpit").joinpath("languages", f"{language}.po").open("rb") as texts:
+        return read_po(texts)
 
 
 def said(text: str, language: str, make: Make = HOME) -> str:

@@ -143,6 +143,11 @@ class Make:
             icons = {icon: glyph for icon, glyph in outlines.items() if glyph} | icons
         return Style(day, night, icons, *own.corners)
 
+    @property
+    def has_quick(self) -> bool:
+        """Whether its dock has temperatures and defrosters."""
+        return self.bar.quick and self.bar.side in (Side.ABOVE, Side.BELOW)
+
     def frame(self, size: ScreenSize) -> Frame:
         """Where the parts of a display of that size lie."""
         return Frame(size, self.bar.side, self.status)
@@ -159,7 +164,9 @@ class Make:
     @cached_property
     def told(self) -> Mapping[str, Mapping[str, str]]:
         """By language, what it says in place of home's words."""
-        own = {**{place.title[0]: place.title for place in self.screens.values()}, **self.words}
+        named = (control[1:] for place in self.screens.values() for shelf in place.shelves for control in shelf.controls)
+        titles = (*(place.title for place in self.screens.values()), *(name for name in named if name))
+        own = {**{title[0]: title for title in titles}, **self.words}
         return {code: {word: told[at] for word, told in own.items()} for at, code in enumerate(LANGUAGES)}
 
 

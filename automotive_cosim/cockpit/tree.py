@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-import numpy as np
-
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.settings.screens import PAGES
 from automotive_cosim.cockpit.apps.vehicle.screens import TABS
-from automotive_cosim.cockpit.language import catalogue
-from automotive_cosim.cockpit.make import HOME, Make, glyphs
+from automotive_cosim.cockpit.language import messages
+from automotive_cosim.cockpit.make import HOME, Control, Make, glyphs
 from automotive_cosim.cockpit.registry import apps, apps_in, docked, pages
 from automotive_cosim.cockpit.theme import Icon, Palette
-from automotive_cosim.contracts.given import CarMake, Language
+from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import Steps
 from automotive_cosim.formats.toml import Document, parse, read_toml
@@ -65,10 +63,10 @@ def named(make: Make, screen: str) -> tuple[str, Icon]:
     if screen in make.screens:
         place = make.screens[screen]
         return place.text, Icon[place.icon]
-    if screen in apps() and (make is HOME or screen not in SUBPAGES or app_of(screen) == screen):
-        return apps()[screen].title, apps()[screen].icon
-    text, icon, _ = SUBPAGES[screen]
-    return text, icon
+    if screen in SUBPAGES and (screen in make.holders or screen not in apps()):
+        text, icon, _ = SUBPAGES[screen]
+        return text, icon
+    return apps()[screen].title, apps()[screen].icon
 
 
 @cache
@@ -105,11 +103,14 @@ def opens(make: Make) -> Mapping[str, str]:
 @cache
 def shelf(make: Make, key: str) -> str:
     """The screen of the make's own that shows a control; empty where it is as at home."""
-    for name, place in make.screens.items():
-        for shelf in place.shelves:
-            if any(key == control[0] or key.startswith(f"{control[0]}.") for control in shelf.controls):
-                return name
-    return ""
+    shelves = ((name, each) for name, place in make.screens.items() for each in place.shelves)
+    return next((name for name, each in shelves if shown_by(each.controls, key)), "")
+
+
+def shown_by(controls: tuple[Control, ...], key: str) -> Control | None:
+    """The control among them that a widget's key belongs to."""
+    fitting = [control for control in controls if f"{key}.".startswith(f"{control[0]}.")]
+    return max(fitting, key=lambda control: len(control[0]), default=None)
 
 
 # --- files ------------------------------------------------------------------------------------------------
@@ -146,14 +147,6 @@ def resolved(word: str) -> str:
     return f"{Path(word).as_posix()}@{_digest(document)}"
 
 
-def drawn(name: CarMake, seed: int) -> CarMake:
-    """The make of an episode: for ``drawn``, one of those that come with the package, by the seed."""
-    if name is not CarMake.DRAWN:
-        return name
-    known = [each for each in CarMake if each is not CarMake.DRAWN]
-    return known[int(np.random.default_rng([seed, 7]).integers(len(known)))]
-
-
 def _digest(document: Document) -> str:
     return hashlib.sha256(document.text.encode()).hexdigest()
 
@@ -184,7 +177,7 @@ def _fields(text: str) -> list[str]:
     return sorted(part.partition("}")[0] for part in text.split("{")[1:])
 
 
-def _names(make: Make) -> Iterator[tuple[Steps, str, str, set[str]]]:
+def _names(make: Make) -> Iterator[tuple[Steps, str, str, Collection[str]]]:
     """Each name in a make: where it is, of what kind, and what there is of that kind."""
     shown = {*SUBPAGES, *apps(), *make.screens} - {app.name for app in apps_in(Where.STORE)}
     icons = {icon.name for icon in Icon}
@@ -199,5 +192,4 @@ def _names(make: Make) -> Iterator[tuple[Steps, str, str, set[str]]]:
     for name, glyph in make.look.icons.items():
         yield ("look", "icons", name), "icon", name, icons
         yield ("look", "icons", name), "glyph", glyph, set(glyphs())
-    known = {str(each.id[0] if isinstance(each.id, tuple) else each.id) for each in catalogue(Language.FRENCH)}
-    yield from ((("words", word), "text of the cockpit", word, known) for word in make.words)
+    yield from ((("words", word), "text of the cockpit", word, messages()) for word in make.words)

@@ -6,6 +6,7 @@ import re
 from abc import abstractmethod
 from enum import StrEnum
 from typing import Self
+from zlib import crc32
 
 
 class Channel(StrEnum):
@@ -209,12 +210,21 @@ class CarMake(OrFile):
 
     HOME = "home"
     """The one that the tasks were written for."""
+    ALDER = "alder"
+    """A bar on the left, and lists in place of cards."""
     DRAWN = "drawn"
     """One of the others, by the seed of the episode."""
 
     @classmethod
     def own(cls) -> str:
         return OWN_MAKE
+
+    def at(self, seed: int) -> CarMake:
+        """The make of the episode with a seed: itself, or one of the others if it is drawn."""
+        if self is not CarMake.DRAWN:
+            return self
+        known = [make for make in CarMake if make not in (CarMake.HOME, CarMake.DRAWN)]
+        return known[crc32(f"make {seed}".encode()) % len(known)]
 
 
 class ToldPolicy(StrEnum):

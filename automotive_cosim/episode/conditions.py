@@ -18,7 +18,9 @@ from annotated_types import Ge, Le, MinLen
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import (
+    OWN_MAKE,
     OWN_PROMPT,
+    CarMake,
     Channel,
     Clock,
     FeedbackDetail,
@@ -26,6 +28,7 @@ from automotive_cosim.contracts.given import (
     Interface,
     Language,
     Order,
+    OrFile,
     PromptLength,
     See,
     ToldPolicy,
@@ -125,6 +128,18 @@ class Conditions:
     ] = Language.ENGLISH  # fmt: skip
     """What the driver speaks, and the car shows."""
 
+    make: Annotated[
+        CarMake,
+        OneOf(CarMake, "make", OWN_MAKE),
+        Words(
+            "Make", "make {0.words}", "{0.tag}", "Success by make",
+            "Whose cockpit the car has: other places, names, menus, units, icons and colours, the same functions. "
+            "A file stands for a make of one's own; its SHA-256 tells one from another.",
+        ),
+    ] = CarMake.HOME  # fmt: skip
+    """Whose cockpit the car has: ``home``, another make, or one ``drawn`` by the seed; or the file of one's own
+    (.toml)."""
+
     interface: Annotated[
         Interface,
         OneOf(Interface, "interface"),
@@ -183,6 +198,10 @@ class Conditions:
         if not self.interface.touches:
             return f"interface = {self.interface} cannot open"
         return f"see = {self.see} withholds" if Channel.SCREENSHOT in self.see.withheld else ""
+
+    def at(self, seed: int) -> Conditions:
+        """The conditions of the episode with a seed."""
+        return replace(self, make=self.make.at(seed))
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -245,7 +264,7 @@ class Condition:
 
     def told(self, value: object) -> str:
         """A value as the heading of a column."""
-        if isinstance(value, PromptLength):
+        if isinstance(value, OrFile):
             return value.words
         return str(value) if self.choices else f"{value:g} s"
 

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from automotive_cosim.cockpit.actions import check
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.cockpit.occupants import Seat
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import (
     BY_HAND,
     Action,
@@ -31,7 +32,7 @@ from automotive_cosim.contracts import (
     Reason,
     RoadNetwork,
 )
-from automotive_cosim.contracts.given import ToldPolicy
+from automotive_cosim.contracts.given import CarMake, ToldPolicy
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.episode.observer import Observer
@@ -355,7 +356,8 @@ def beginning(
 ) -> dict[str, Any]:
     """The fields of a session that begins now, on the screen that its conditions ask for."""
     first = world.moment
-    world.cockpit.fit(setup.conditions.screen)
+    make = setup.conditions.make
+    world.cockpit.fit(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
     elements, observation = _seen(
