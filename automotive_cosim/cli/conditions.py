@@ -12,8 +12,8 @@ from annotated_types import Ge, Le
 
 from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.derived import ShownDefault, number_in, unless_shown, with_options
-from automotive_cosim.episode.conditions import TABLE, Condition
 from automotive_cosim.cockpit import tree
+from automotive_cosim.episode.conditions import TABLE, Condition
 from automotive_cosim.episode.own_prompt import resolved
 
 FROM_FILES = {"prompt": resolved, "make": tree.resolved}

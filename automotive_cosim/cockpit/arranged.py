@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.app import AppPage
 from automotive_cosim.cockpit.cards import back, content, heading, rows, title
 from automotive_cosim.cockpit.flow import Block, BlockPart, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.layout import REST
-from automotive_cosim.cockpit.make import Control, Place
+from automotive_cosim.cockpit.make import Place, Shelf
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.size import Room
@@ -27,7 +27,9 @@ from automotive_cosim.contracts.text import Text
 
 W = TypeVar("W", bound=Widget)
 LINE_HEIGHT, LINE_GAP, INSET = 84, 8, (12, 8)
-CONTROL_WIDTH = 392
+NARROW_ROOM, WIDE_ROOM, TWO_COLUMNS, MOST_CHOICES = 392, 640, 1100, 4
+"""Width of a control beside its name; lines stand in two columns on screens wider than that, unless one has more
+choices."""
 
 
 def page_of(state: State) -> AppPage:
@@ -66,11 +68,13 @@ def _menu(screen: str, place: Place, state: State) -> tuple[Widget, ...]:
 
 def _shelves(screen: str, place: Place, state: State) -> tuple[Widget, ...]:
     """The controls that it shows."""
-    every = [part for shelf in place.shelves for part in _parts(shelf.of, shelf.controls, state)]
-    columns = 2 if content(state).width > 760 and len(every) > 5 else 1
+    every = [part for shelf in place.shelves for part in _parts(shelf, state)]
+    widest = max(sum(isinstance(each, Choice) for each in own) for own, _ in every)
+    wide = content(state).width > TWO_COLUMNS
+    columns, room = (2, NARROW_ROOM) if wide and widest <= MOST_CHOICES else (1, WIDE_ROOM if wide else NARROW_ROOM)
     listed = rows(
-        f"{screen}.all", place.text, state, every, lambda _, part: part, columns=columns, height=LINE_HEIGHT,
-        gap=LINE_GAP,
+        f"{screen}.all", place.text, state, every, lambda _, part: _line(*part, room), columns=columns,
+        height=LINE_HEIGHT, gap=LINE_GAP,
     )  # fmt: skip
     return _titled(screen, place, state, listed)
 
@@ -80,29 +84,32 @@ def _titled(screen: str, place: Place, state: State, body: BlockPart) -> tuple[W
     return fill(content(state), stack((48, head), GAP, (REST, body)))
 
 
-def _parts(of: str, controls: tuple[Control, ...], state: State) -> Iterator[Block]:
-    """The controls of a screen, each as a line."""
-    made = [widget for child in pages()[of].made(state) for widget in child.walk() if widget.key]
-    for control in controls:
-        own = [each for each in made if shown_by(controls, each.key) is control]
+def _parts(shelf: Shelf, state: State) -> Iterator[tuple[list[Widget], str]]:
+    """The widgets of each control, and its name."""
+    made = [widget for child in pages()[shelf.of].made(state) for widget in child.walk() if widget.key]
+    for control in shelf.controls:
+        own = [each for each in made if shown_by(shelf.controls, each.key) is control]
         if own:
-            yield _line(own, Text(control[1], {}, "make") if control[1:] else "")
+            yield own, Text(control[1], {}, "make") if control[1:] else ""
 
 
-def _line(own: list[Widget], name: str) -> Block:
+def _line(own: list[Widget], name: str, room: int) -> Block:
     """A control, after its name unless it shows it itself."""
     labels = [each for each in own if isinstance(each, Label)]
     if len(labels) == len(own):
-        return framed(replace(labels[0], style=Type.LABEL, align="left", lines=1), INSET)
+        told = replace(labels[0], style=Type.LABEL, align="left", lines=1)
+        return framed(line(4, heading(told.description), told) if told.description else line(4, told), INSET)
     touched = sorted((each for each in own if each.listens), key=lambda each: each.rect.x)
     if touched and all(isinstance(each, Choice) for each in touched):
         control = framed(grid(len(touched), 4, *touched), (4, 4), look="raised")
     elif labels:
         first, *others = touched
-        control = line((64, first), replace(labels[0], style=Type.STRONG, align="centre"), *((64, each) for each in others))
+        control = line(
+            (64, first), replace(labels[0], style=Type.STRONG, align="centre"), *((64, each) for each in others)
+        )
         name = name or labels[0].description
     else:
         control = grid(len(touched), GAP, *touched)
         if not name and any(isinstance(each, Tile | Slider | Button) and each.text for each in touched):
             return framed(control, INSET)
-    return framed(line(4, (REST, heading(name)), 8, (CONTROL_WIDTH, control)), INSET)
+    return framed(line(4, (REST, heading(name)), 8, (room, control)), INSET)

@@ -316,7 +316,7 @@ class Cockpit:
         return twin
 
     def fit(self, size: ScreenSize, make: Make | None = None) -> None:
-        """Takes a display of this size, and of another make if one is given, in place of its own unless it is so."""
+        """Takes a display of this size, and of a make if one is given, unless it has that already."""
         if size is not self._state.size:
             self._state.size, self._tree = size, None
             self._display = Display(1.0)

@@ -54,9 +54,7 @@ class Ink:
 class Canvas:
     """Draws the widgets of one frame."""
 
-    def __init__(
-        self, image: Image.Image, scale: float, style: Style = HOME_STYLE, *, night: bool = False
-    ) -> None:
+    def __init__(self, image: Image.Image, scale: float, style: Style = HOME_STYLE, *, night: bool = False) -> None:
         """Draws on an image; ``scale`` is pixels per logical pixel."""
         self.image = image
         self.style = style
@@ -67,7 +65,14 @@ class Canvas:
 
     @classmethod
     def plain(
-        cls, width: int, height: int, scale: float, colour: Colour, style: Style = HOME_STYLE, *, night: bool = False
+        cls,
+        width: int,
+        height: int,
+        scale: float,
+        colour: Colour,
+        style: Style = HOME_STYLE,
+        *,
+        night: bool = False,
     ) -> Canvas:
         """A canvas of that size in pixels, filled with one colour."""
         return cls(Image.new("RGB", (width, height), colour), scale, style, night=night)

@@ -92,7 +92,7 @@ def _bar(frame: Frame) -> tuple[Rect, ...]:
         charge,
         gear.middle(36, 36),
         pace,
-        unit.moved(0, 6),
+        unit.moved(0, 6).within(size.whole),
         notice.left(min(notice.width, NOTICE_WIDTH)).inset(0, 6),
         sign.middle(50, 50),
     )
@@ -253,9 +253,7 @@ def dock(state: State) -> tuple[Widget, ...]:
 
 
 @lru_cache(maxsize=256)
-def _dock(
-    make: Make, size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool
-) -> tuple[Widget, ...]:
+def _dock(make: Make, size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
     signals, frame = (
         Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)}),
         make.frame(size),

@@ -97,7 +97,8 @@ def _translated(text: Text, language: str, make: Make) -> str:
     if not text.fields:
         return form
     fields = {
-        name: said(value, language, make) if isinstance(value, str) else value for name, value in text.fields.items()
+        name: said(value, language, make) if isinstance(value, str) else value
+        for name, value in text.fields.items()
     }
     return form.format(**fields)
 

@@ -21,6 +21,8 @@ REST: Final = None
 """A part that takes what the others leave."""
 
 LayoutPart = int | None
+FULL, NARROWER = 1232, 0.9
+"""Width of a screen for which the sizes of its parts are given, and how narrow a row may become."""
 
 
 @lru_cache(maxsize=2048)
@@ -35,23 +37,28 @@ def column(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
 
 @lru_cache(maxsize=2048)
 def row(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
-    """The boxes of the parts, side by side.
+    """The boxes of the parts, side by side; a tenth narrower where the box is too narrow for them.
 
     Raises:
-        ValueError: they are wider than the box.
+        ValueError: they are wider still.
     """
+    fixed = sum(part or 0 for part in parts)
+    if rect.width < fixed <= rect.width / NARROWER:
+        parts = tuple(part and int(part * rect.width / fixed) for part in parts)
     return tuple(Rect(rect.x + left, rect.y, end - left, rect.height) for left, end in _edges(rect.width, parts))
 
 
 def panes(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
-    """The parts of a screen, a gap apart: side by side, or in a box taller than wide one above the other, as high
-    as each other.
+    """The parts of a screen, a gap apart: side by side, in a narrow box narrower, or in a box taller than wide one
+    above the other, as high as each other.
 
     Raises:
         ValueError: they are wider than the box.
     """
     if rect.height > rect.width:
         return rect.rows(len(parts), GAP)
+    if rect.width < FULL:
+        parts = tuple(part and part * rect.width // FULL for part in parts)
     spaced = [part for each in parts for part in (GAP, each)][1:]
     return row(rect, *spaced)[::2]
 

@@ -11,10 +11,10 @@
     [words]
     "Front defrost" = ["Clear screen", "Pare-brise", "Scheibe frei", "前面曇り取り"]
 
-A make says where things lie, what they are called in each language, how menus are grouped, in which units and colours
-it shows, and with which icons. What it does not say is as in ``HOME``. Screens with ``holds`` are menus, those with
-``cards`` show controls of other screens; one with the name of a screen stands in its place. What the car can do, and
-how, is the same in all of them.
+A make says where things lie, what they are called in each language, how menus are grouped, in which units and
+colours it shows, and with which icons. What it does not say is as in ``HOME``. Screens with ``holds`` are menus,
+those with ``shelves`` show controls of other screens; one with the name of a screen stands in its place. What the
+car can do, and how, is the same in all of them.
 """
 
 from __future__ import annotations
@@ -113,13 +113,13 @@ class LookOfMake:
 class Make:
     """A maker's cockpit; the fields of its file."""
 
-    bar: BarOfMake = BarOfMake()  # noqa: RUF009, frozen
+    bar: BarOfMake = BarOfMake()
     status: Annotated[Side, OneOf((Side.ABOVE, Side.BELOW), "side")] = Side.ABOVE
     mirrored: bool = False
     """Whether what home has on the left of a screen is on its right."""
     menus: Literal["tiles", "list"] = "tiles"
     """How menus look."""
-    units: UnitsOfMake = UnitsOfMake()  # noqa: RUF009, frozen
+    units: UnitsOfMake = UnitsOfMake()
     look: LookOfMake = field(default_factory=LookOfMake)
     screens: Mapping[str, Place] = field(default_factory=dict)
     words: Mapping[str, Told] = field(default_factory=dict)
@@ -157,6 +157,11 @@ class Make:
         """The menu that holds each screen that one holds."""
         return {screen: name for name, place in self.screens.items() for screen in place.holds}
 
+    @cached_property
+    def placed(self) -> frozenset[str]:
+        """Screens that its bar or a menu of its own leads to."""
+        return frozenset({*self.bar.entries, *self.holders})
+
     def said(self, text: str, language: str = Language.ENGLISH) -> str:
         """Its own words for a message without fields; the same if it has none."""
         return self.told[language].get(text, text)
@@ -164,7 +169,9 @@ class Make:
     @cached_property
     def told(self) -> Mapping[str, Mapping[str, str]]:
         """By language, what it says in place of home's words."""
-        named = (control[1:] for place in self.screens.values() for shelf in place.shelves for control in shelf.controls)
+        named = (
+            control[1:] for place in self.screens.values() for shelf in place.shelves for control in shelf.controls
+        )
         titles = (*(place.title for place in self.screens.values()), *(name for name in named if name))
         own = {**{title[0]: title for title in titles}, **self.words}
         return {code: {word: told[at] for word, told in own.items()} for at, code in enumerate(LANGUAGES)}

@@ -46,7 +46,7 @@ def picture(state: State) -> Screen:
     lower = equipped(state, dock(state))
     beside = frame.beside(page.room)
     upper = page.made(state)
-    if make.mirrored:
+    if make.mirrored and not page.sided:
         area = frame.content(page.room)
         upper = tuple(moved(widget, area.x + area.right - widget.rect.right - widget.rect.x) for widget in upper)
     if beside is not None:

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 from enum import Enum, StrEnum
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import FULL, REST, column, row
 from automotive_cosim.cockpit.theme import DOCK_HEIGHT, GAP, MARGIN, STATUS_HEIGHT
 
-APP_WIDTH, PANE_HEIGHT, KEYBOARD_HEIGHT = 1232, 544, 304
-SIDE_WIDTH, SIDE_MARGIN = 104, 12
+APP_WIDTH, PANE_HEIGHT, KEYBOARD_HEIGHT = FULL, 544, 304
+SIDE_WIDTH, SIDE_MARGIN = 96, 12
 """Width of a dock at a side, and the margin of the screen beside it."""
 
 
@@ -77,7 +77,7 @@ class Frame:
 
     size: ScreenSize = ScreenSize.STANDARD
     bar: Side = Side.BELOW
-    """Where the dock is, next to the status bar if that is on the same side; in portrait, one at a side is below."""
+    """Where the dock is, inside the status bar if both are there; in portrait, one at a side is below."""
     status_at: Side = Side.ABOVE
 
     @property

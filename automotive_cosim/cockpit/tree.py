@@ -50,7 +50,7 @@ def holder(make: Make, screen: str) -> str:
 
 @cache
 def root(make: Make, screen: str) -> str:
-    """The entry of the dock that a screen belongs to; of home, another name for what is opened on the status bar."""
+    """The entry of the dock that a screen belongs to; at home none for what is opened on the status bar."""
     if make is HOME:
         return docked()[screen]
     above = holder(make, screen)

@@ -10,17 +10,17 @@ from typing import Any
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.cockpit.actions import perform
-from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.cockpit.signals import named
+from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
+from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.session import Actor, play
-from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.situation import HandOver, SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
-from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import Hash, Step

@@ -104,7 +104,9 @@ def draw(
     if held_out:
         phrasing = phrasings - 1
     goal = phrased(task, half_name, parameters, language)[phrasing]
-    return Instance(task, half_name, goal, parameters, held_out=phrasing == phrasings - 1, language=language, make=make)
+    return Instance(
+        task, half_name, goal, parameters, held_out=phrasing == phrasings - 1, language=language, make=make
+    )
 
 
 def phrased(

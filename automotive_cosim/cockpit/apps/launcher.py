@@ -6,13 +6,11 @@ from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.cards import content, rows
 from automotive_cosim.cockpit.flow import fill
-from automotive_cosim.cockpit.make import HOME
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.registry import apps, apps_in
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.tree import loose
 from automotive_cosim.cockpit.widgets import Button, Widget
 from automotive_cosim.contracts.text import say
 
@@ -25,8 +23,7 @@ def launcher(state: State) -> tuple[Widget, ...]:
         *apps_in(Where.STATUS),
         *(app for app in apps_in(Where.DOCK) if app.name not in ("home", "apps")),
     )
-    if state.make is not HOME:
-        offered = tuple(app for app in offered if app.name in loose(state.make))
+    offered = tuple(app for app in offered if app.name not in state.make.placed)
 
     def entry(index: int, app: App) -> Button:
         return Button(
