@@ -31,7 +31,7 @@ from automotive_cosim.cockpit.size import Frame, ScreenSize, Side
 from automotive_cosim.cockpit.theme import DAY, HOME_STYLE, NIGHT, Icon, Style
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.contracts.text import Text
-from automotive_cosim.formats.annotations import Form, OneOf
+from automotive_cosim.formats.annotations import OneOf
 
 LANGUAGES = tuple(Language)
 """In the order in which a make's words stand."""
@@ -39,7 +39,8 @@ Told = Annotated[tuple[str, ...], MinLen(4), MaxLen(4)]
 """A text in every language, in their order."""
 Control = Annotated[tuple[str, ...], MinLen(1), MaxLen(5)]
 """Key of a control, or the beginning of the keys of its parts; and its name in every language, if it shows none."""
-Colours = Mapping[str, Annotated[str, Form(r"^[0-9A-F]{6}$", "six hexadecimal digits")]]
+Colours = Mapping[str, str]
+"""Six hexadecimal digits for each colour of ``Palette``."""
 Corner = Annotated[int, Ge(0), Le(32)]
 
 

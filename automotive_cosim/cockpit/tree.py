@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
@@ -161,6 +162,10 @@ def check(document: Document) -> None:
     for steps, kind, name, known in _names(make):
         if name not in known:
             raise document.refused(steps, str(UnknownNameError(kind, name, sorted(known))))
+    for light, colours in (("day", make.look.day), ("night", make.look.night)):
+        for name, code in colours.items():
+            if not re.fullmatch("[0-9A-Fa-f]{6}", code):
+                raise document.refused(("look", light, name), f"is {code[:20]!r}; give six digits such as 1A2B3C")
     for word, told in make.words.items():
         if any(_fields(each) != _fields(word) for each in told):
             raise document.refused(("words", word), "has other fields in braces than the words that it replaces")
