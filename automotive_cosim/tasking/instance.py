@@ -144,12 +144,16 @@ def speech(task: Task, language: Language) -> Speech:
 def _as_shown(half: Half, language: Language, make: Make) -> Half:
     """The half with what a finger looks for on the screens in that language and the make's words."""
 
+    def told(text: str) -> str:
+        """A message, or a name and a value."""
+        return ": ".join(word(each, language, make) for each in text.split(": "))
+
     def change(part: Any) -> Any:
         match part:
             case Tap(text=text):
-                return replace(part, text=word(text, language, make))
+                return replace(part, text=told(text))
             case TapUntil(text=text):
-                shown = word(text, language, make)
+                shown = told(text)
                 return replace(part, text=shown if shown != text else said(Quantity(text), language))
         return KEEP
 

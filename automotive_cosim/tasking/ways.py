@@ -105,6 +105,6 @@ def units_in(make: Make, task: Task) -> Mapping[str, str]:
     figures = any(char.isdigit() for half in halves for tells in half.tells for text in tells for char in text)
     if taken or figures:
         return {}
-    degrees = any("TapUntil" in move and "°C" in move for move in every)
+    degrees = any("TapUntil" in move and "_temperature" in move for move in every)
     kept = {HMI.TEMPERATURE_UNIT.path} if degrees else set[str]()
     return {path: unit for path, unit in make.units.signals.items() if path not in kept}
