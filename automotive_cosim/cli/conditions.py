@@ -12,11 +12,10 @@ from annotated_types import Ge, Le
 
 from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.derived import ShownDefault, number_in, unless_shown, with_options
-from automotive_cosim.cockpit import tree
-from automotive_cosim.episode.conditions import TABLE, Condition
+from automotive_cosim.episode.conditions import TABLE, Condition, condition
 from automotive_cosim.episode.own_prompt import resolved
 
-FROM_FILES = {"prompt": resolved, "make": tree.resolved}
+FROM_FILES = {"prompt": resolved, "make": partial(Condition.value, condition("make"))}
 """What becomes of the name of a file, by condition."""
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -189,7 +189,7 @@ def _rgb(code: str) -> tuple[int, int, int]:
 @cache
 def glyphs() -> Mapping[str, str]:
     """Code points of the icons' font by their names."""
-    from fonticon_mdi7 import MDI7
+    from fonticon_mdi7 import MDI7  # type: ignore[import-untyped]
 
     told = {name: getattr(MDI7, name) for name in dir(MDI7) if not name.startswith("_")}
     return {name: str(code).rpartition(".")[2] for name, code in told.items()}

@@ -275,6 +275,10 @@ class Condition:
             UserError: it has no such value.
         """
         kind, *annotations = get_args(self.kind)
+        if self.name == "make" and isinstance(given, str):
+            from automotive_cosim.cockpit.tree import resolved  # the whole cockpit, for a file of one's own
+
+            given = resolved(given)
         if self.choices:
             is_beside = any(isinstance(each, OneOf) and _fits(each.beside, given) for each in annotations)
             if given not in self.choices and not is_beside:

@@ -168,8 +168,8 @@ class Ground:
         for path, unit in {**units, **self.half.start.signals}.items():
             if path in units:
                 world.cockpit.signals[named(path)] = unit
-        now = {"signals": world.cockpit.signals.snapshot(), "commands": world.cockpit.commands()}
-        world.moment = replace(world.moment, **now)
+        car = world.cockpit
+        world.moment = replace(world.moment, signals=car.signals.snapshot(), commands=car.commands())
         there = HandOver(instance, world, episode.drive, episode.scenario, episode.traffic_seed)
         setup = replace(SETUP, conditions=Conditions(make=make))
         oracle = Oracle()
