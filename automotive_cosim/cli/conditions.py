@@ -15,7 +15,10 @@ from automotive_cosim.cli.derived import ShownDefault, number_in, unless_shown, 
 from automotive_cosim.episode.conditions import TABLE, Condition, condition
 from automotive_cosim.episode.own_prompt import resolved
 
-FROM_FILES = {"prompt": resolved, "make": partial(Condition.value, condition("make"))}
+FROM_FILES: Mapping[str, Callable[[str], Any]] = {
+    "prompt": resolved,
+    "make": partial(Condition.value, condition("make")),
+}
 """What becomes of the name of a file, by condition."""
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.app import AppPage
 from automotive_cosim.cockpit.cards import back, content, heading, rows, title
 from automotive_cosim.cockpit.flow import Block, BlockPart, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.layout import REST
-from automotive_cosim.cockpit.make import Place, Shelf
+from automotive_cosim.cockpit.make import OwnScreen, Shelf
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.size import Room
@@ -48,7 +48,7 @@ def moved(widget: W, across: int) -> W:
     return replace(widget, rect=widget.rect.moved(across, 0), children=children)
 
 
-def _menu(screen: str, place: Place, state: State) -> tuple[Widget, ...]:
+def _menu(screen: str, place: OwnScreen, state: State) -> tuple[Widget, ...]:
     """The screens that it leads to."""
     make, tiles = state.make, state.make.menus == "tiles"
 
@@ -66,7 +66,7 @@ def _menu(screen: str, place: Place, state: State) -> tuple[Widget, ...]:
     return _titled(screen, place, state, every)
 
 
-def _shelves(screen: str, place: Place, state: State) -> tuple[Widget, ...]:
+def _shelves(screen: str, place: OwnScreen, state: State) -> tuple[Widget, ...]:
     """The controls that it shows."""
     every = [part for shelf in place.shelves for part in _parts(shelf, state)]
     widest = max(sum(isinstance(each, Choice) for each in own) for own, _ in every)
@@ -79,7 +79,7 @@ def _shelves(screen: str, place: Place, state: State) -> tuple[Widget, ...]:
     return _titled(screen, place, state, listed)
 
 
-def _titled(screen: str, place: Place, state: State, body: BlockPart) -> tuple[Widget, ...]:
+def _titled(screen: str, place: OwnScreen, state: State, body: BlockPart) -> tuple[Widget, ...]:
     head = line(title(Icon[place.icon], place.text, f"{screen}.title"), GAP, (160, back(screen)))
     return fill(content(state), stack((48, head), GAP, (REST, body)))
 

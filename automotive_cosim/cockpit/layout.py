@@ -21,8 +21,8 @@ REST: Final = None
 """A part that takes what the others leave."""
 
 LayoutPart = int | None
-FULL, NARROWER = 1232, 0.9
-"""Width of a screen for which the sizes of its parts are given, and how narrow a row may become."""
+FULL = 1232
+"""Width of a screen for which the sizes of its parts are given."""
 
 
 @lru_cache(maxsize=2048)
@@ -37,14 +37,11 @@ def column(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
 
 @lru_cache(maxsize=2048)
 def row(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
-    """The boxes of the parts, side by side; a tenth narrower where the box is too narrow for them.
+    """The boxes of the parts, side by side.
 
     Raises:
-        ValueError: they are wider still.
+        ValueError: they are wider than the box.
     """
-    fixed = sum(part or 0 for part in parts)
-    if rect.width < fixed <= rect.width / NARROWER:
-        parts = tuple(part and int(part * rect.width / fixed) for part in parts)
     return tuple(Rect(rect.x + left, rect.y, end - left, rect.height) for left, end in _edges(rect.width, parts))
 
 

@@ -27,7 +27,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le, MaxLen, MinLen
 
 from automotive_cosim.cockpit.signals import HMI
-from automotive_cosim.cockpit.size import Frame, ScreenSize, Side
+from automotive_cosim.cockpit.size import DisplayEdge, Frame, ScreenSize
 from automotive_cosim.cockpit.theme import DAY, HOME_STYLE, NIGHT, Icon, Style
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.contracts.text import Text
@@ -37,11 +37,11 @@ LANGUAGES = tuple(Language)
 """In the order in which a make's words stand."""
 Told = Annotated[tuple[str, ...], MinLen(4), MaxLen(4)]
 """A text in every language, in their order."""
-Control = Annotated[tuple[str, ...], MinLen(1), MaxLen(5)]
+ShelfItem = Annotated[tuple[str, ...], MinLen(1), MaxLen(5)]
 """Key of a control, or the beginning of the keys of its parts; and its name in every language, if it shows none."""
-Colours = Mapping[str, str]
+ColourCodes = Mapping[str, str]
 """Six hexadecimal digits for each colour of ``Palette``."""
-Corner = Annotated[int, Ge(0), Le(32)]
+Radius = Annotated[int, Ge(0), Le(32)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +50,11 @@ class Shelf:
 
     of: str
     """The screen that has them at home."""
-    controls: Annotated[tuple[Control, ...], MinLen(1)]
+    controls: Annotated[tuple[ShelfItem, ...], MinLen(1)]
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class OwnScreen:
     """A screen of a make: a menu of others, or controls of others."""
 
     title: Told
@@ -73,7 +73,7 @@ class Place:
 class BarOfMake:
     """The dock."""
 
-    side: Annotated[Side, OneOf(Side)] = Side.BELOW
+    side: Annotated[DisplayEdge, OneOf(DisplayEdge)] = DisplayEdge.BELOW
     entries: tuple[str, ...] = ()
     """Screens that it leads to; empty for those of home."""
     quick: bool = True
@@ -98,16 +98,16 @@ class UnitsOfMake:
 
 @dataclass(frozen=True, slots=True)
 class LookOfMake:
-    """Colours, corners and icons."""
+    """ColourCodes, corners and icons."""
 
-    corners: tuple[Corner, Corner] = (HOME_STYLE.card, HOME_STYLE.button)
+    corners: tuple[Radius, Radius] = (HOME_STYLE.card, HOME_STYLE.button)
     """Radius of cards and of buttons, in logical pixels."""
     outlined: bool = False
     """Whether icons are outlines where the font has them."""
     icons: Mapping[str, str] = field(default_factory=dict)
     """Other icons, by the names that Material Design Icons 7 has for them."""
-    day: Colours = field(default_factory=dict)
-    night: Colours = field(default_factory=dict)
+    day: ColourCodes = field(default_factory=dict)
+    night: ColourCodes = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -115,14 +115,14 @@ class Make:
     """A maker's cockpit; the fields of its file."""
 
     bar: BarOfMake = BarOfMake()
-    status: Annotated[Side, OneOf((Side.ABOVE, Side.BELOW), "side")] = Side.ABOVE
+    status: Annotated[DisplayEdge, OneOf((DisplayEdge.ABOVE, DisplayEdge.BELOW), "side")] = DisplayEdge.ABOVE
     mirrored: bool = False
     """Whether what home has on the left of a screen is on its right."""
     menus: Literal["tiles", "list"] = "tiles"
     """How menus look."""
     units: UnitsOfMake = UnitsOfMake()
     look: LookOfMake = field(default_factory=LookOfMake)
-    screens: Mapping[str, Place] = field(default_factory=dict)
+    screens: Mapping[str, OwnScreen] = field(default_factory=dict)
     words: Mapping[str, Told] = field(default_factory=dict)
     """By home's English words, its own."""
 
@@ -147,7 +147,7 @@ class Make:
     @property
     def has_quick(self) -> bool:
         """Whether its dock has temperatures and defrosters."""
-        return self.bar.quick and self.bar.side in (Side.ABOVE, Side.BELOW)
+        return self.bar.quick and self.bar.side in (DisplayEdge.ABOVE, DisplayEdge.BELOW)
 
     def frame(self, size: ScreenSize) -> Frame:
         """Where the parts of a display of that size lie."""

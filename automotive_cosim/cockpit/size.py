@@ -62,7 +62,7 @@ class ScreenSize(StrEnum):
         return 2 if self is ScreenSize.PORTRAIT else 1
 
 
-class Side(StrEnum):
+class DisplayEdge(StrEnum):
     """An edge of the display."""
 
     ABOVE = "above"
@@ -76,14 +76,14 @@ class Frame:
     """Where each part of a display lies."""
 
     size: ScreenSize = ScreenSize.STANDARD
-    bar: Side = Side.BELOW
+    bar: DisplayEdge = DisplayEdge.BELOW
     """Where the dock is, inside the status bar if both are there; in portrait, one at a side is below."""
-    status_at: Side = Side.ABOVE
+    status_at: DisplayEdge = DisplayEdge.ABOVE
 
     @property
     def upright(self) -> bool:
         """Whether the dock's entries stand one above the other."""
-        return self.bar in (Side.LEFT, Side.RIGHT) and self.size is not ScreenSize.PORTRAIT
+        return self.bar in (DisplayEdge.LEFT, DisplayEdge.RIGHT) and self.size is not ScreenSize.PORTRAIT
 
     @property
     def status(self) -> Rect:
@@ -112,7 +112,7 @@ class Frame:
         rest = _strip(self.size.whole, self.status_at, self.status.height)[1]
         if self.upright:
             return _strip(rest, self.bar, SIDE_WIDTH)
-        bar = self.bar if self.bar is Side.ABOVE else Side.BELOW
+        bar = self.bar if self.bar is DisplayEdge.ABOVE else DisplayEdge.BELOW
         return _strip(rest, bar, self.size.bars * DOCK_HEIGHT)
 
     def _areas(self, room: Room) -> tuple[Rect, Rect | None]:
@@ -126,14 +126,14 @@ class Frame:
         return app, companion
 
 
-def _strip(rect: Rect, at: Side, thick: int) -> tuple[Rect, Rect]:
+def _strip(rect: Rect, at: DisplayEdge, thick: int) -> tuple[Rect, Rect]:
     """A strip along an edge of a box, and the rest."""
     match at:
-        case Side.ABOVE:
+        case DisplayEdge.ABOVE:
             return rect.top(thick), rect.below(thick)
-        case Side.BELOW:
+        case DisplayEdge.BELOW:
             return rect.bottom_part(thick), rect.top(rect.height - thick)
-        case Side.LEFT:
+        case DisplayEdge.LEFT:
             return rect.left(thick), rect.right_part(rect.width - thick)
-        case Side.RIGHT:
+        case DisplayEdge.RIGHT:
             return rect.right_part(thick), rect.left(rect.width - thick)

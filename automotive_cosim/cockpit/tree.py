@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.settings.screens import PAGES
 from automotive_cosim.cockpit.apps.vehicle.screens import TABS
 from automotive_cosim.cockpit.language import messages
-from automotive_cosim.cockpit.make import HOME, Control, Make, glyphs
+from automotive_cosim.cockpit.make import HOME, Make, ShelfItem, glyphs
 from automotive_cosim.cockpit.registry import apps, apps_in, docked, pages
 from automotive_cosim.cockpit.theme import Icon, Palette
 from automotive_cosim.contracts.given import CarMake
@@ -108,7 +108,7 @@ def shelf(make: Make, key: str) -> str:
     return next((name for name, each in shelves if shown_by(each.controls, key)), "")
 
 
-def shown_by(controls: tuple[Control, ...], key: str) -> Control | None:
+def shown_by(controls: tuple[ShelfItem, ...], key: str) -> ShelfItem | None:
     """The control among them that a widget's key belongs to."""
     fitting = [control for control in controls if f"{key}.".startswith(f"{control[0]}.")]
     return max(fitting, key=lambda control: len(control[0]), default=None)
