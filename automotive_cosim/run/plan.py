@@ -17,7 +17,7 @@ from automotive_cosim.agents import MODELLED, Agent, AgentSettings, is_remote, m
 from automotive_cosim.cockpit import tree
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import CarMake, Clock
+from automotive_cosim.contracts.given import Clock
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
@@ -137,8 +137,6 @@ class Plan(EvaluationSettings):
         for name in ("trials", "settings"):  # as in plans from before there were any
             if getattr(self, name) in ((), AS_SCRIPTED):
                 del made[name]
-        if lists_of(self)["make"] == (CarMake.HOME,):
-            del made["make"]
         return made
 
     def check(self, *, dry: bool = False) -> tuple[str, ...]:
