@@ -158,24 +158,24 @@ def check(document: Document) -> None:
     Raises:
         UserError: with file and line: what does not exist, or a screen that nothing leads to.
     """
-    make = document.read(Make)
+    make, wrong = document.read(Make), document.refused
     for steps, kind, name, known in _names(make):
         if name not in known:
-            raise document.refused(steps, str(UnknownNameError(kind, name, sorted(known))))
+            raise wrong(steps, str(UnknownNameError(kind, name, sorted(known))))
     for light, colours in (("day", make.look.day), ("night", make.look.night)):
         for name, code in colours.items():
             if not re.fullmatch("[0-9A-Fa-f]{6}", code):
-                raise document.refused(("look", light, name), f"is {code[:20]!r}; give six digits such as 1A2B3C")
+                raise wrong(("look", light, name), f"is {code[:20]!r}; give six digits such as 1A2B3C")
     for word, told in make.words.items():
         if any(_fields(each) != _fields(word) for each in told):
-            raise document.refused(("words", word), "has other fields in braces than the words that it replaces")
+            raise wrong(("words", word), "has other fields in braces than the words that it replaces")
     for name, place in make.screens.items():
         if bool(place.holds) == bool(place.shelves):
-            raise document.refused(("screens", name), "needs either holds, of screens, or shelves, of controls")
+            raise wrong(("screens", name), "needs either holds, of screens, or shelves, of controls")
         if name not in pages() and holder(make, name) == LAUNCHER:
-            raise document.refused(("screens", name), "is in no menu and not in the bar; put it into one")
+            raise wrong(("screens", name), "is in no menu and not in the bar; put it into one")
     if not {"home", LAUNCHER} <= {*entries(make)}:
-        raise document.refused(("bar",), "lacks home or apps among its entries; add both, all else hangs on them")
+        raise wrong(("bar",), "lacks home or apps among its entries; add both, all else hangs on them")
 
 
 def _fields(text: str) -> list[str]:
