@@ -19,6 +19,7 @@ import numpy.typing as npt
 from automotive_cosim.cockpit.actions import check
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.cockpit.occupants import Seat
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import (
     BY_HAND,
     Action,
@@ -31,7 +32,7 @@ from automotive_cosim.contracts import (
     Reason,
     RoadNetwork,
 )
-from automotive_cosim.contracts.given import Hearing, ToldPolicy
+from automotive_cosim.contracts.given import CarMake, Hearing, ToldPolicy
 from automotive_cosim.cosim.attention import Asked
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
@@ -413,7 +414,8 @@ def beginning(
     first, is_by_ear = world.moment, setup.conditions.hear.is_by_ear
     (wish,) = reaching((goal,), setup, first)
     reached: tuple[Any, ...] = ((wish,), level_db(first)) if is_by_ear else ()
-    world.cockpit.fit(setup.conditions.screen)
+    make = setup.conditions.make
+    world.cockpit.fit(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, TOLD_HEARD if is_by_ear else "")
     elements, observation = _seen(
