@@ -23,7 +23,7 @@ from pathlib import Path
 from statistics import fmean
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
-from automotive_cosim.studies.adoption.adoption import AdoptionJob, AdoptionPlan, drive, warmed_up
+from automotive_cosim.studies.adoption.adoption import AdoptionPlan, drive, warmed_up
 from automotive_cosim.traffic import sumo_programs
 
 PACKAGES = ("routerl==2.0.0", "eclipse-sumo==1.28.0", "libsumo==1.28.0")
@@ -110,9 +110,14 @@ def ours(folder: Path, starts: Sequence[int], days: int) -> list[tuple[float, fl
         sys.exit(printed)
     minutes = (max(starts) + 120) / 60
     plan = AdoptionPlan(
-        str(folder / "two.sumocfg"), agent="never", warm_up_s=WARM_UP_S, minutes=minutes, every_s=3_600.0
+        str(folder / "two.sumocfg"),
+        seeds=(42,),
+        agent="never",
+        warm_up_s=WARM_UP_S,
+        minutes=minutes,
+        every_s=3_600.0,
     )
-    job = AdoptionJob(plan, 42)
+    (job,) = plan.jobs()
     found = []
     with closing(warmed_up(job)) as warm:
         for choose in CHOICES.values():
