@@ -18,7 +18,7 @@ import inspect
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from datetime import date, time
 from enum import Enum
 from functools import cache
@@ -680,7 +680,7 @@ def _class(kind: type[Any]) -> _Decoder:
     decoders: Mapping[str, _Decoder] = {
         name: _SPECIAL.get((kind.__name__, name)) or _decoder(hint) for name, hint in hints(kind).items()
     }
-    needed = [each.name for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING]
+    needed = notation.needed(kind)
 
     def read(reader: _Reader, value: Any) -> Any:
         value = value if kind.__name__ == "Topic" and isinstance(value, Quoted) else reader.named(value)

@@ -39,16 +39,16 @@ from automotive_cosim.tasking.moves import Do, Open, Tap, Warn
 from automotive_cosim.tasking.task import Basis, Differs, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
-    Dark,
-    Driving,
-    InCountry,
-    InTunnel,
-    Lit,
     Not,
-    Parked,
-    SignalAbove,
-    Standing,
     Trigger,
+    dark,
+    driving,
+    in_country,
+    in_tunnel,
+    lit,
+    parked,
+    signal_above,
+    standing,
 )
 from automotive_cosim.tasks import CATALOGUE
 from tests.written import COMFORT, ON_THE_WAY, asked
@@ -206,10 +206,10 @@ def test_a_goal_that_takes_another_request_is_seen(ground, goal, wrong):
 @pytest.mark.parametrize(
     ("condition", "stands"),
     [
-        (Parked(), True),
-        (All((Dark(), All((Standing(), Lit())))), True),
-        (Not(Parked()), False),
-        (All((Dark(), Driving())), False),
+        (parked(), True),
+        (All((dark(), All((standing(), lit())))), True),
+        (Not(parked()), False),
+        (All((dark(), driving())), False),
     ],
     ids=str,
 )
@@ -348,7 +348,7 @@ def test_a_side_effect_that_stays_ends_a_hopeless_run(ground):
 
 
 def test_a_trigger_without_a_drive_is_seen(ground, simulations):
-    free = changed(trigger=Trigger(SignalAbove(HVAC.CABIN_TEMPERATURE, -50.0), for_s=2.0, within_s=20.0))
+    free = changed(trigger=Trigger(signal_above(HVAC.CABIN_TEMPERATURE, -50.0), for_s=2.0, within_s=20.0))
     assert list(gates.road(ground(free), simulations)) == ["its trigger is reached by a parked car"]
 
 
@@ -480,7 +480,7 @@ def test_a_wrong_tag_of_place_is_seen(ground, tags, origins, countries, rule, se
         replace(
             SOUND.first,
             start=replace(GRID, origin=origin),
-            trigger=Trigger(All((Driving(), *map(InCountry, countries[at : at + 1]))), 3.0, 60.0),
+            trigger=Trigger(All((driving(), *map(in_country, countries[at : at + 1]))), 3.0, 60.0),
             basis=Basis.LAW if rule else Basis.WISH,
             rule=rule,
         )
@@ -500,7 +500,7 @@ def test_every_reading_has_a_facet_and_every_difference_frees_some():
 
 
 def test_a_scenario_out_of_reach_is_seen(simulations):
-    dark = changed(trigger=Trigger(InTunnel(), for_s=1.0, within_s=5.0))
+    dark = changed(trigger=Trigger(in_tunnel(), for_s=1.0, within_s=5.0))
     (wrong,) = gates.reach(replace(dark, scenarios=("grid",)), 0, simulations)
     assert wrong.startswith("first in grid: ")
 

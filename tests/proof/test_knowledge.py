@@ -17,11 +17,11 @@ from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.moves import Consult, Open, Tap, TypeText
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Basis, Deadline, Half, Start
-from automotive_cosim.tasking.triggers import Driving, Trigger
+from automotive_cosim.tasking.triggers import Trigger, driving
 
 HALF = Half(
     Start("grid", "avenue"),
-    Trigger(Driving(), 3.0, 60.0),
+    Trigger(driving(), 3.0, 60.0),
     NothingDone(),
     (),
     Deadline(60.0, "for the test"),
