@@ -72,7 +72,7 @@ from automotive_cosim.proof.knowledge import DrawnValues, unknown
 from automotive_cosim.proof.place import mistagged
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking.binding import rules_of
-from automotive_cosim.tasking.checks import AlertGiven, Check, NothingDone
+from automotive_cosim.tasking.checks import AlertGiven, Check, nothing_done
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Consult, Move
 from automotive_cosim.tasking.parameters import FromCockpit
@@ -552,7 +552,7 @@ def leak(ground: Ground, simulations: Simulations) -> Wrong:
 def _bare(half: Half) -> Half:
     return replace(
         half,
-        goal=NothingDone(),
+        goal=nothing_done(),
         moves=(),
         ways=(),
         basis=Basis.WISH,

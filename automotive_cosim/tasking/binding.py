@@ -95,11 +95,11 @@ def _may_hold(condition: TriggerCondition, road: Road) -> bool:
         case Situation("in_tunnel" | "tunnel_within" | "tunnel_on_route"):
             return road.in_tunnel
         case Situation("on_road_class", (classes,)):
-            return road.road_class in classes
+            return bool(road.road_class in classes)
         case Situation("on_street", (name,)):
-            return road.name == name
+            return bool(road.name == name)
         case Situation("lanes", (count,)):
-            return road.lane_count >= count
+            return bool(road.lane_count >= count)
         case Situation("in_school_zone"):
             return road.school_zone
         case Situation("over_posted"):

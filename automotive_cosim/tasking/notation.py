@@ -27,14 +27,13 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
-from types import ModuleType
 from typing import Any, get_type_hints
 
 from automotive_cosim.cockpit import signals
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import Action, ActionType, PullOver, Reroute, SlowDown
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.tasking import checks, effects, history
+from automotive_cosim.tasking import checks, effects, history, triggers
 from automotive_cosim.tasking.checks import AllOf, AnyOf, AppDataIs, Check, SignalIs, SignalWithin
 from automotive_cosim.tasking.moves import (
     Consult,
@@ -49,9 +48,9 @@ from automotive_cosim.tasking.moves import (
     TypeText,
     Warn,
 )
+from automotive_cosim.tasking.named import ROWS
 from automotive_cosim.tasking.parameters import Param
 from automotive_cosim.tasking.triggers import (
-    SITUATIONS,
     All,
     Not,
     Situation,
@@ -530,19 +529,18 @@ class _Conditions(_Goals):
         return kinds[sign](subject, of_signal(subject, self.value(), self.decode))
 
 
+SIGNS = ("signal_has", "signal_above", "signal_below")
+"""Conditions that are written as =, > and <."""
+
+
 @cache
 def conditions_by_name(*, of_trigger: bool) -> Mapping[str, Callable[..., Any]]:
     """What makes each condition, by its name, without those that have a sign or a word."""
-    if of_trigger:
-        return {name: row.made for name, row in SITUATIONS.items() if not name.startswith("signal_")}
-    written = {AllOf, AnyOf, SignalIs, SignalWithin}
-    where: tuple[ModuleType, ...] = (checks, effects, history)
-    found = (each for module in where for each in vars(module).values() if inspect.isclass(each))
+    modules = {each.__name__ for each in ((triggers,) if of_trigger else (checks, effects, history))}
+    classes = () if of_trigger else checks.CLASSES
     return {
-        named_as(each): each
-        for each in found
-        if "holds" in vars(each) and each not in written and not getattr(each, "_is_protocol", False)
-    }
+        name: row.made for name, row in ROWS.items() if row.holds.__module__ in modules and name not in SIGNS
+    } | {named_as(each): each for each in classes}
 
 
 def named_as(kind: Callable[..., Any]) -> str:
@@ -558,13 +556,13 @@ def hints(kind: Any) -> Mapping[str, Any]:
 @cache
 def _hints(kind: Any) -> Mapping[str, Any]:
     every = get_type_hints(kind, include_extras=True)
-    situation = SITUATIONS.get(kind.__name__)
-    names = [each.name for each in fields(kind)] if situation is None else situation.values
+    row = ROWS.get(kind.__name__)
+    names = [each.name for each in fields(kind)] if row is None else row.values
     return {name: every[name] for name in names}
 
 
 def needed(kind: Any) -> tuple[str, ...]:
     """Those of them that have no default."""
-    if kind.__name__ in SITUATIONS:
-        return SITUATIONS[kind.__name__].needed
+    if kind.__name__ in ROWS:
+        return ROWS[kind.__name__].needed
     return tuple(each.name for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING)

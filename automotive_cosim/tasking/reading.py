@@ -37,7 +37,7 @@ from automotive_cosim.formats import bounds
 from automotive_cosim.formats.checked import Steps
 from automotive_cosim.formats.toml import Document
 from automotive_cosim.tasking import notation
-from automotive_cosim.tasking.checks import Check, NothingDone
+from automotive_cosim.tasking.checks import Check, nothing_done
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.notation import (
     PLACEHOLDER,
@@ -319,7 +319,7 @@ class _Reader:
         self._topics = made.get("topics", ())
         self.steps = (*steps, "start")
         made["start"] = self.decode(self.table(given["start"], {}), Start)
-        made["goal"] = self._at("goal", given["goal"], Check, *steps) if "goal" in given else NothingDone()
+        made["goal"] = self._at("goal", given["goal"], Check, *steps) if "goal" in given else nothing_done()
         self.steps = (*steps, "moves")
         moves = notation.moves(given.get("moves", ""), self.decode, () if first is None else first.moves)
         for name in ("ways", "slips"):

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import wraps
-from inspect import Parameter, signature
-from typing import Any, Concatenate, NamedTuple, ParamSpec, Protocol
+from typing import Any, Concatenate, ParamSpec, Protocol
 
 from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import ENERGY, MOTION, Signal
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.named import ROWS, Named, Words, keep
 
 WALKING_MPS = 2.0
 STANDING_MPS = 0.1
@@ -72,61 +71,17 @@ class Not:
         return f"not: {self.condition}"
 
 
-class _Row(NamedTuple):
-    holds: Callable[..., bool]
-    words: str | Callable[..., str]
-    """With the values in braces, or made of them."""
-    made: Callable[..., Situation]
-    values: tuple[str, ...]
-    needed: tuple[str, ...]
-    """Those without a default."""
-
-
 @dataclass(frozen=True, slots=True)
-class Situation:
-    """One of ``SITUATIONS``."""
-
-    name: str
-    values: tuple[Any, ...] = ()
+class Situation(Named):
+    """A condition with its values."""
 
     def __call__(self, moment: Moment) -> bool:
-        return SITUATIONS[self.name].holds(moment, *self.values)
-
-    def __str__(self) -> str:
-        row = SITUATIONS[self.name]
-        if callable(row.words):
-            return row.words(*self.values)
-        return row.words.format_map(dict(zip(row.values, self.values, strict=True)))
+        return ROWS[self.name].holds(moment, *self.values)
 
 
-SITUATIONS: dict[str, _Row] = {}
-"""Every condition by its name."""
-
-
-def situation(
-    words: str | Callable[..., str],
-) -> Callable[[Callable[Concatenate[Moment, P], bool]], Callable[P, Situation]]:
-    """Makes a condition of a predicate, which then takes its values and gives the ``Situation`` with them.
-
-    Args:
-        words: what it is called, with its values in braces, or what makes that of them.
-    """
-
-    def kept(holds: Callable[Concatenate[Moment, P], bool]) -> Callable[P, Situation]:
-        name, given = holds.__name__, signature(holds)
-        own = given.replace(parameters=list(given.parameters.values())[1:])
-
-        @wraps(holds)
-        def made(*values: P.args, **named: P.kwargs) -> Situation:
-            found = own.bind(*values, **named)
-            found.apply_defaults()
-            return Situation(name, found.args)
-
-        needed = (each for each, value in own.parameters.items() if value.default is Parameter.empty)
-        SITUATIONS[name] = _Row(holds, words, made, tuple(own.parameters), tuple(needed))
-        return made
-
-    return kept
+def situation(words: Words) -> Callable[[Callable[Concatenate[Moment, P], bool]], Callable[P, Situation]]:
+    """Makes a condition of a predicate, which then takes its values and gives the ``Situation`` with them."""
+    return lambda holds: keep(Situation, holds, 1, words, lambda *values: frozenset())
 
 
 # --- how the car moves ---

@@ -30,10 +30,10 @@ from automotive_cosim.tasking.checks import (
     AlertGiven,
     AllOf,
     AnyOf,
-    NothingDone,
-    RoadAsked,
     SignalIs,
-    SignalRaised,
+    nothing_done,
+    road_asked,
+    signal_raised,
 )
 from automotive_cosim.tasking.moves import Do, Open, Tap, Warn
 from automotive_cosim.tasking.task import Basis, Differs, Dimension, Half, Module, Start, Task
@@ -197,7 +197,7 @@ def test_a_goal_that_takes_the_wrong_seat_is_seen(ground):
     assert any("PassengerSide" in wrong for wrong in gates.near(stand, stand.reference))
 
 
-@pytest.mark.parametrize(("goal", "wrong"), [(AnyRequest(), 1), (RoadAsked(PullOver), 0)], ids=["any", "that one"])
+@pytest.mark.parametrize(("goal", "wrong"), [(AnyRequest(), 1), (road_asked(PullOver), 0)], ids=["any", "that one"])
 def test_a_goal_that_takes_another_request_is_seen(ground, goal, wrong):
     stand = ground(changed(goal=goal, moves=(Open("safety"), Tap("safety.pull_over"))))
     assert list(gates.near(stand, stand.reference)) == ["succeeds with requests something else"] * wrong
@@ -268,7 +268,7 @@ def test_an_alert_that_takes_no_advice_is_seen(ground, monkeypatch):
 
 def test_a_set_point_that_warms_nobody_is_seen(ground):
     start = replace(GRID, cabin={"temperature_c": 8.0})
-    task = changed(goal=SignalRaised(HVAC.DRIVER_TEMPERATURE, 2.0), start=start, moves=())
+    task = changed(goal=signal_raised(HVAC.DRIVER_TEMPERATURE, 2.0), start=start, moves=())
     moves = (Open("climate"), Tap("hvac.driver_temperature.increase", times=4))
     task = replace(task, dimension=Dimension.IMPLICIT_INTENT, first=replace(task.first, moves=moves))
     (wrong,) = gates.effect(ground(task))
@@ -296,7 +296,7 @@ def test_a_cruise_above_the_limit_is_seen(ground):
 
 
 def test_a_task_that_wants_nothing_is_seen(ground):
-    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), NothingDone())), moves=())
+    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), nothing_done())), moves=())
     wrong = list(gates.trivial({"first": ground(free)}))
     assert "complete wins" in wrong
 
@@ -311,7 +311,7 @@ def test_functions_win_what_touch_wins_and_nothing_by_themselves(ground):
     assert list(functions_are_not_enough({"first": stand})) == []
     (wrong,) = functions_win(ground(changed(goal=SignalIs(SEAT.DRIVER_HEATING, (50.0, -50.0)))))
     assert "succeeds with set_seat_heating {'which': 'driver', 'percent': -50.0}" in wrong
-    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), NothingDone())), moves=())
+    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), nothing_done())), moves=())
     assert "complete at once wins by functions" in list(functions_are_not_enough({"first": ground(free)}))
 
 
@@ -321,7 +321,7 @@ def test_a_task_that_luck_wins_is_seen(ground, monkeypatch):
 
 
 def test_a_refusal_may_be_won_by_the_declarations_of_chance(ground):
-    refused = ground(changed(goal=NothingDone(), moves=(), declares=GoalStatus.INFEASIBLE))
+    refused = ground(changed(goal=nothing_done(), moves=(), declares=GoalStatus.INFEASIBLE))
     assert list(gates.random(refused)) == []
     assert [gates.by_chance(trials, 1 / 3) for trials in (0, 1, 4, 5, 9, 20)] == [0, 1, 4, 4, 6, 12]
     assert gates.by_chance(20, 0.0) == 0
@@ -329,7 +329,7 @@ def test_a_refusal_may_be_won_by_the_declarations_of_chance(ground):
 
 def test_only_what_is_lost_is_given_up(ground):
     """Luck that ends in success without giving up does so with it, and the other way round."""
-    easy = ground(replace(SOUND, first=replace(SOUND.first, goal=AnyOf((SOUND.first.goal, NothingDone())))))
+    easy = ground(replace(SOUND, first=replace(SOUND.first, goal=AnyOf((SOUND.first.goal, nothing_done())))))
     for at in (easy, ground(SOUND)):
         for number in range(8):
             whole, short = (at.play(at.agent(Random(number)), stop_when_lost=stop) for stop in (False, True))
@@ -360,7 +360,7 @@ def test_a_pair_with_one_right_act_is_seen(ground):
 
 def test_a_pair_that_can_always_be_declined_is_seen(ground):
     declares, reasons = GoalStatus.INFEASIBLE, frozenset({Reason.SAFETY})
-    idle = Half(GRID, ON_THE_WAY, NothingDone(), (), COMFORT, Basis.WISH, declares=declares, reasons=reasons)
+    idle = Half(GRID, ON_THE_WAY, nothing_done(), (), COMFORT, Basis.WISH, declares=declares, reasons=reasons)
     pair = replace(SOUND, first=idle, second=idle, difference="none")
     grounds = {half: ground(pair, half) for half in pair.halves}
     assert f"{GoalStatus.INFEASIBLE} wins both halves" in list(gates.trivial(grounds))

@@ -20,7 +20,7 @@ from automotive_cosim.contracts import (
     RoadRequest,
     SlowDown,
 )
-from automotive_cosim.tasking.checks import AlertGiven, RoadAsked
+from automotive_cosim.tasking.checks import AlertGiven, road_asked
 from automotive_cosim.tasking.triggers import out_of_range, slow_leader_within
 
 
@@ -93,5 +93,5 @@ def test_a_request_counts_by_its_class_or_as_it_is(
 ):
     before = SlowDown(30.0)
     start, now = asked(before), asked(before, *requests)
-    assert RoadAsked(Reroute).holds(start, now, [now]) is any_reroute
-    assert RoadAsked(Reroute("A 4")).holds(start, now, [now]) is that_reroute
+    assert road_asked(Reroute).holds(start, now, [now]) is any_reroute
+    assert road_asked(Reroute("A 4")).holds(start, now, [now]) is that_reroute
