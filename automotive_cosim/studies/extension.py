@@ -24,6 +24,13 @@ def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
     groups["scenarios"].command("equilibrate")(equilibrate_scenario)
 
 
+NETWORKS = {
+    CongestionSettings.kind: ("congestion.results:CongestionStudy", "congestion.page:shown", "seed"),
+    AdoptionSettings.kind: ("adoption.adoption:AdoptionStudy", "adoption.page:shown", "seed"),
+    DaysSettings.kind: ("days.days:DaysStudy", "days.page:shown", "share of a seed"),
+}
+"""Studies of a whole network: what reads the folder, what its report shows, and what a row is about."""
+
 KINDS = {
     RerouteSettings.kind: ResultsKind(
         f"{HOME}.reroute.page:write_study",
@@ -31,7 +38,5 @@ KINDS = {
         f"{HOME}.reroute.decisions:attributed",
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
-    CongestionSettings.kind: ResultsKind(f"{HOME}.content:write_report", "seed"),
-    AdoptionSettings.kind: ResultsKind(f"{HOME}.content:write_report", "seed"),
-    DaysSettings.kind: ResultsKind(f"{HOME}.content:write_report", "share of a seed"),
+    **{kind: ResultsKind(f"{HOME}.content:write_report", unit) for kind, (_, _, unit) in NETWORKS.items()},
 }

@@ -17,7 +17,7 @@ from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.dialogue import Topic, questions
-from automotive_cosim.tasking.named import ROWS, Named, Words, keep
+from automotive_cosim.tasking.named import ROWS, Named, Wording, keep
 
 
 class Check(Protocol):
@@ -71,7 +71,7 @@ def _its_path(signal: Signal[Any], *others: object) -> frozenset[str]:
 
 
 def goal(
-    words: Words, writes: Callable[..., frozenset[str]] = _its_key
+    words: Wording, writes: Callable[..., frozenset[str]] = _its_key
 ) -> Callable[[Callable[Concatenate[Moment, Moment, Sequence[Moment], P], bool]], Callable[P, NamedCheck]]:
     """Makes a check of a predicate, which then takes its values and gives the ``NamedCheck`` with them.
 

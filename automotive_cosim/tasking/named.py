@@ -12,7 +12,7 @@ from inspect import Parameter, signature
 from typing import Any, NamedTuple, TypeVar
 
 N = TypeVar("N", bound="Named")
-Words = str | Callable[..., str]
+Wording = str | Callable[..., str]
 """What it is called, with its values in braces, or what makes that of them."""
 
 
@@ -20,7 +20,7 @@ class NamedRow(NamedTuple):
     """What is known of a name."""
 
     holds: Callable[..., bool]
-    words: Words
+    words: Wording
     writes: Callable[..., frozenset[str]]
     made: Callable[..., Named]
     """Makes it of its values."""
@@ -48,7 +48,7 @@ class Named:
 
 
 def keep(
-    kind: type[N], holds: Callable[..., bool], given: int, words: Words, writes: Callable[..., frozenset[str]]
+    kind: type[N], holds: Callable[..., bool], given: int, words: Wording, writes: Callable[..., frozenset[str]]
 ) -> Callable[..., N]:
     """Keeps a function in the table; returns what makes it of its values.
 

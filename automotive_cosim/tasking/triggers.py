@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import ENERGY, MOTION, Signal
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.tasking.named import ROWS, Named, Words, keep
+from automotive_cosim.tasking.named import ROWS, Named, Wording, keep
 
 WALKING_MPS = 2.0
 STANDING_MPS = 0.1
@@ -79,7 +79,7 @@ class Situation(Named):
         return ROWS[self.name].holds(moment, *self.values)
 
 
-def situation(words: Words) -> Callable[[Callable[Concatenate[Moment, P], bool]], Callable[P, Situation]]:
+def situation(words: Wording) -> Callable[[Callable[Concatenate[Moment, P], bool]], Callable[P, Situation]]:
     """Makes a condition of a predicate, which then takes its values and gives the ``Situation`` with them."""
     return lambda holds: keep(Situation, holds, 1, words, lambda *values: frozenset())
 
