@@ -17,8 +17,8 @@ from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import cannot_write, read_manifest, read_rows
-from automotive_cosim.studies.extension import HOME, KINDS, NETWORKS
 from automotive_cosim.studies.plan import plan_of
+from automotive_cosim.studies.settings import HOME, NETWORKS, RerouteSettings
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -107,7 +107,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
 
 def _lines(folder: Path) -> list[Json]:
     kind = read_manifest(folder)["plan"].get("study")
-    if kind not in KINDS:
+    if kind not in (RerouteSettings.kind, *NETWORKS):
         raise UserError(f"{folder} is no study; automotive_cosim.load_results reads evaluations")
     return list(read_study(folder, kind).lines())
 

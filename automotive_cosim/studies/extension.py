@@ -7,9 +7,7 @@ from collections.abc import Mapping
 import typer
 
 from automotive_cosim.run.extensions import ResultsKind
-from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, RerouteSettings
-
-HOME = "automotive_cosim.studies"
+from automotive_cosim.studies.settings import HOME, NETWORKS, RerouteSettings
 
 
 def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
@@ -23,13 +21,6 @@ def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
     groups["scenarios"].command("calibrate")(calibrate_scenario)
     groups["scenarios"].command("equilibrate")(equilibrate_scenario)
 
-
-NETWORKS = {
-    CongestionSettings.kind: ("congestion.results:CongestionStudy", "congestion.page:shown", "seed"),
-    AdoptionSettings.kind: ("adoption.adoption:AdoptionStudy", "adoption.page:shown", "seed"),
-    DaysSettings.kind: ("days.days:DaysStudy", "days.page:shown", "share of a seed"),
-}
-"""Studies of a whole network: what reads the folder, what its report shows, and what a row is about."""
 
 KINDS = {
     RerouteSettings.kind: ResultsKind(
