@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any, Concatenate, ParamSpec, Protocol
 
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
-from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA, Signal
 from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.dialogue import Topic, questions
@@ -313,6 +313,37 @@ def asked_first(start: Moment, now: Moment, trace: Sequence[Moment], topic: Topi
     return topic.named(asked[0]["text"]) == len(topic.choices)
 
 
+QUIETING = frozenset(
+    each.path
+    for each in (
+        CABIN.DRIVER_WINDOW,
+        CABIN.PASSENGER_WINDOW,
+        CABIN.REAR_LEFT_WINDOW,
+        CABIN.REAR_RIGHT_WINDOW,
+        CABIN.SUNROOF,
+        HVAC.FAN_SPEED,
+        MEDIA.ACTION,
+        MEDIA.VOLUME,
+        MEDIA.MUTED,
+    )
+)
+"""What makes the cabin quieter, and may be changed before a question."""
+
+
+@goal(
+    "the driver asked back about {topic.name}, before anything but the noise was changed",
+    writes=lambda topic: frozenset(),  # it may be asked again: the answer, too, has to be heard
+)
+def asked_back(start: Moment, now: Moment, trace: Sequence[Moment], topic: Topic) -> bool:
+    """The driver was asked about it, or to say it again, before anything but the noise was changed."""
+    for count, asked in enumerate(questions(start, now), start=1):
+        if topic.fits(asked["text"]):
+            then = next(moment for moment in trace if len(questions(start, moment)) >= count)
+            changed = {key for key, value in then.commands.items() if value != start.commands.get(key)}
+            return changed <= QUIETING | {"questions"}
+    return False
+
+
 @goal("the driver not asked", writes=frozenset)
 def not_asked(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
     """The driver was not asked anything: what he wants can be found out."""
@@ -321,7 +352,7 @@ def not_asked(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
 
 def asked_in(check: Check) -> Iterator[Topic]:
     """The topics of a goal that the driver has to be asked about."""
-    if isinstance(check, NamedCheck) and check.name == "asked_first":
+    if isinstance(check, NamedCheck) and check.name in ("asked_first", "asked_back"):
         yield check.values[0]
     for part in getattr(check, "checks", ()):
         yield from asked_in(part)
