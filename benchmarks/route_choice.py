@@ -32,8 +32,14 @@ LONGER_S = 2.0
 WARM_UP_S = 10
 """Ours warms up, so its departures are that much later."""
 FIRST, SECOND = ("E0", "E1", "E7", "E2"), ("E0", "E3", "E4", "E5", "E2")
-NODES = {"J0": (0, 100), "J1": (100, 100), "J6": (173.97, 100), "J2": (200, 100), "J3": (300, 100)}
-NODES |= {"J4": (100, 87.5), "J5": (200, 87.5)}
+NODES: dict[str, tuple[float, float]] = {
+    "J0": (0, 100),
+    "J1": (100, 100),
+    "J6": (173.97, 100),
+    "J2": (200, 100),
+    "J3": (300, 100),
+}
+NODES |= {"J6": (173.97, 100), "J2": (200, 100), "J3": (300, 100)}
 EDGES = {"E0": "J0 J1", "E1": "J1 J6", "E7": "J6 J2", "E2": "J2 J3", "E3": "J1 J4", "E4": "J4 J5", "E5": "J5 J2"}
 CHOICES: Mapping[str, Callable[[int], int]] = {
     "all the first": lambda number: 0,
@@ -103,8 +109,8 @@ def ours(folder: Path, starts: Sequence[int], days: int) -> list[tuple[float, fl
         '<configuration><input><net-file value="two.net.xml"/><route-files value="two.rou.xml"/></input>'
         "</configuration>"
     )
-    made = ("-n", "two.nod.xml", "-e", "two.edg.xml", "-o", "two.net.xml", "--no-turnarounds", "true")
-    made += ("--junctions.limit-turn-speed", "5.5")
+    made = ["-n", "two.nod.xml", "-e", "two.edg.xml", "-o", "two.net.xml", "--no-turnarounds", "true"]
+    made += ["--junctions.limit-turn-speed", "5.5"]
     is_made, printed = sumo_programs.run("netconvert", made, folder)
     if not is_made:
         sys.exit(printed)

@@ -19,7 +19,7 @@ from automotive_cosim.studies.adoption.adoption import (
     AdoptionRow,
     AdoptionStudy,
     Cohort,
-    Said,
+    ShareLog,
     ShareOutcome,
     run_seed,
 )
@@ -76,7 +76,7 @@ def test_herding_is_what_is_gone_of_the_first_gain() -> None:
 
 
 def test_warnings_of_one_kind_on_one_road_within_a_minute_are_of_one_hazard() -> None:
-    said = Said(
+    said = ShareLog(
         warned=[("traffic", "a", 0.0), ("traffic", "a", 59.0), ("traffic", "b", 1.0), ("slippery", "a", 2.0)]
     )
     assert said.hazards == 3

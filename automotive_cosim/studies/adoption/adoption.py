@@ -169,7 +169,7 @@ class AdoptionRow(JobRow):
 
 
 @dataclass(slots=True)
-class Said:
+class ShareLog:
     """What the assistants of a share have done."""
 
     reroutes: int = 0
@@ -211,7 +211,7 @@ def warmed_up(job: AdoptionJob) -> Forked:
 
 def drive(
     job: AdoptionJob, warm: Forked, share: float, assistant: Assistant | None = None
-) -> tuple[Said, Mapping[str, CarTrip]]:
+) -> tuple[ShareLog, Mapping[str, CarTrip]]:
     """Drives a share: what its assistants did, and every car's trip by its id.
 
     Args:
@@ -275,12 +275,12 @@ class _Drive:
     def __init__(self, job: AdoptionJob, road: RemoteRoad, assistant: Assistant | None) -> None:
         self._job, self._plan, self._scenario, self._road = job, job.plan, job.plan.scene(), road
         self._policy = job.plan.policy
-        self._said = Said()
+        self._said = ShareLog()
         self._end_s = 0.0
         self._own = assistant or own_assistant(self._policy.agent, job.seed)
         self._model = None if self._own else model_of(*named(self._policy.agent))
 
-    def go(self, share: float) -> Said:
+    def go(self, share: float) -> ShareLog:
         """Drives for the plan's time; what the assistants did."""
         road, fleet = self._road, Fleet[None](self._road.step_s)
         road.call(town.equip, share, self._job.seed, self._plan.driver)
@@ -426,7 +426,7 @@ def _now_s(car: RemoteTraffic) -> float:
 
 
 def _outcome(
-    job: AdoptionJob, share: float, said: Said, trips: Mapping[str, CarTrip], before: Mapping[str, CarTrip]
+    job: AdoptionJob, share: float, said: ShareLog, trips: Mapping[str, CarTrip], before: Mapping[str, CarTrip]
 ) -> ShareOutcome:
     both = sorted(trips.keys() & before.keys())
     equipped = [car for car in both if town.drawn(job.seed, car) < share]
