@@ -107,13 +107,18 @@ class Attention:
             self.read = state.notices[-1].at_s, state.notices[-1].text
         return read_s
 
-    def passed(self, state: State, dt_s: float) -> None:
-        """Lets time pass that ends now."""
+    def glanced(self, dt_s: float) -> None:
+        """Lets time pass for the eyes."""
         if self.is_away:
             self.eyes_s, self.look_s = max(0.0, self.eyes_s - dt_s), max(0.0, self.look_s - dt_s)
             self.is_away = self.eyes_s > 0.0 and self.look_s > 0.0
         else:
             self.eyes_s = min(GLANCE_S, self.eyes_s + dt_s)
+        self._look(0.0)
+
+    def passed(self, state: State, dt_s: float) -> None:
+        """Lets time pass that ends now."""
+        self.glanced(dt_s)
         self.load *= math.exp(-dt_s / FADES_S)
         talked_s = min(dt_s, self.talk_s)
         self.talk_s -= talked_s
