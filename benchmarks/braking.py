@@ -8,8 +8,6 @@ One car follows another at 25 m/s, 1.4 s behind, which brakes at 3 m/s2. ``netco
 from __future__ import annotations
 
 import argparse
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -18,6 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from automotive_cosim.cosim.attention import CALLED, FADES_S, MIND, SPENT, SPENT_H, Asked, Attention
+from automotive_cosim.traffic.sumo_programs import run
 
 AWARE = (1.0, 0.9, 0.85, 0.8, 0.78, 0.76, 0.73, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 STEP_S, MPS, HEADWAY_S = 0.1, 25.0, 1.4
@@ -40,8 +39,7 @@ def road(folder: Path) -> list[str]:
     (folder / "n.nod.xml").write_text('<nodes><node id="a" x="0" y="0"/><node id="b" x="8000" y="0"/></nodes>')
     (folder / "n.edg.xml").write_text('<edges><edge id="e" from="a" to="b" speed="30"/></edges>')
     routes.write_text(ROUTES)
-    made = [str(Path(sys.executable).with_name("netconvert")), "-n", str(folder / "n.nod.xml")]
-    subprocess.run([*made, "-e", str(folder / "n.edg.xml"), "-o", str(net)], check=True, capture_output=True)
+    run("netconvert", ["-n", folder / "n.nod.xml", "-e", folder / "n.edg.xml", "-o", net])
     return ["-n", str(net), "-r", str(routes), "--step-length", str(STEP_S), "--no-step-log", "--no-warnings"]
 
 

@@ -139,6 +139,7 @@ class Conditions:
             "Make", "make {0.words}", "{0.tag}", "Success by make",
             "Whose cockpit the car has: other places, names, menus, units, icons and colours, the same functions. "
             "A file stands for a make of one's own; its SHA-256 tells one from another.",
+            is_rare=True,
         ),
     ] = CarMake.HOME  # fmt: skip
     """Whose cockpit the car has: ``home``, another make, or one ``drawn`` by the seed; or the file of one's own
@@ -205,6 +206,7 @@ class Conditions:
         Words(
             "Attention", "attention {}", "attention_{}", "Success by the driver's attention",
             "Whether what the agent shows and says takes the driver's attention off the road (on) or not (off).",
+            is_rare=True,
         ),
     ] = DriverAttention.OFF  # fmt: skip
     """Whether what the agent shows and says takes the driver's attention off the road, so that he brakes later and
