@@ -56,8 +56,6 @@ class Words:
     """What its values mean, below that table."""
     is_speed: bool = False
     """Whether it is about how fast the agent answers, and not about what it is given."""
-    is_rare: bool = False
-    """Whether rows leave its default out: it came later than rows on record."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -139,7 +137,6 @@ class Conditions:
             "Make", "make {0.words}", "{0.tag}", "Success by make",
             "Whose cockpit the car has: other places, names, menus, units, icons and colours, the same functions. "
             "A file stands for a make of one's own; its SHA-256 tells one from another.",
-            is_rare=True,
         ),
     ] = CarMake.HOME  # fmt: skip
     """Whose cockpit the car has: ``home``, another make, or one ``drawn`` by the seed; or the file of one's own
@@ -172,7 +169,6 @@ class Conditions:
             "Hears", "hears by {}", "hear_{}", "Success by how the agent hears",
             "What people in the car say reaches the agent as text, or as a recogniser made it out in the noise of "
             "that instant (cabin), or as sound (audio); then speaking takes time, and the driver may not hear it.",
-            is_rare=True,
         ),
     ] = Hearing.TEXT  # fmt: skip
     """How the driver's words reach the agent: as they are (``text``), as a recogniser makes them out in the
@@ -206,7 +202,6 @@ class Conditions:
         Words(
             "Attention", "attention {}", "attention_{}", "Success by the driver's attention",
             "Whether what the agent shows and says takes the driver's attention off the road (on) or not (off).",
-            is_rare=True,
         ),
     ] = DriverAttention.OFF  # fmt: skip
     """Whether what the agent shows and says takes the driver's attention off the road, so that he brakes later and
