@@ -159,11 +159,12 @@ def main() -> None:
     parsed.keep.mkdir(parents=True, exist_ok=True)
     file = parsed.keep / "figures.json"
     found = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    seeds, families = range(parsed.seeds), parsed.families
     with closing(Simulations()) as simulations:
-        for family, seed, who in product(parsed.families, range(parsed.seeds), AGENTS):
-            name = f"{family} {seed} {who}"
+        for name in [f"{family} {seed} {who}" for seed, family, who in product(seeds, families, AGENTS)]:
+            family, seed, who = name.split()
             if name not in found and time.monotonic() - begun_s < parsed.for_s:
-                found[name] = played(family, seed, who, simulations)
+                found[name] = played(family, int(seed), who, simulations)
                 write_whole(file, json.dumps(found, indent=1) + "\n")
     print(table(found))
     print(f"{len(found)} drives")
