@@ -4,6 +4,7 @@ import sys
 
 import pytest
 from typer.main import get_command
+from typer.testing import CliRunner
 
 from automotive_cosim import __version__
 from automotive_cosim.agents import AGENTS
