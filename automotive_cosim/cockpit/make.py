@@ -98,7 +98,7 @@ class UnitsOfMake:
 
 @dataclass(frozen=True, slots=True)
 class LookOfMake:
-    """ColourCodes, corners and icons."""
+    """Colours, corners and icons."""
 
     corners: tuple[Radius, Radius] = (HOME_STYLE.card, HOME_STYLE.button)
     """Radius of cards and of buttons, in logical pixels."""

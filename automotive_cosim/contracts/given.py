@@ -146,6 +146,22 @@ class Order(StrEnum):
         return self is Order.FULL
 
 
+class Hearing(StrEnum):
+    """How the words of the people in the car reach the agent."""
+
+    TEXT = "text"
+    """As they were said."""
+    CABIN = "cabin"
+    """As a recogniser made them out in the noise of that instant (``voice``)."""
+    AUDIO = "audio"
+    """As sound in that noise, for models that take sound; needs the extra ``voice``."""
+
+    @property
+    def is_by_ear(self) -> bool:
+        """Whether the cabin's sound counts, in both directions."""
+        return self is not Hearing.TEXT
+
+
 class OrFile(StrEnum):
     """Words, or beside them ``FILE@SHA-256``; two of the same file are equal."""
 

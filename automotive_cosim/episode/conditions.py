@@ -26,6 +26,7 @@ from automotive_cosim.contracts.given import (
     DriverAttention,
     FeedbackDetail,
     GeoInput,
+    Hearing,
     Interface,
     Language,
     Order,
@@ -161,6 +162,17 @@ class Conditions:
     ] = Order.PLAIN  # fmt: skip
     """What the driver of a drive asks for: in a sentence (``plain``), as before a drive (``usual``), or with every
     threshold (``full``)."""
+    hear: Annotated[
+        Hearing,
+        OneOf(Hearing, "way to hear"),
+        Words(
+            "Hears", "hears by {}", "hear_{}", "Success by how the agent hears",
+            "What people in the car say reaches the agent as text, or as a recogniser made it out in the noise of "
+            "that instant (cabin), or as sound (audio); then speaking takes time, and the driver may not hear it.",
+        ),
+    ] = Hearing.TEXT  # fmt: skip
+    """How the driver's words reach the agent: as they are (``text``), as a recogniser makes them out in the
+    noise of the cabin (``cabin``), or as sound in it (``audio``)."""
 
     prompt: Annotated[
         PromptLength,
