@@ -32,14 +32,8 @@ LONGER_S = 2.0
 WARM_UP_S = 10
 """Ours warms up, so its departures are that much later."""
 FIRST, SECOND = ("E0", "E1", "E7", "E2"), ("E0", "E3", "E4", "E5", "E2")
-NODES: dict[str, tuple[float, float]] = {
-    "J0": (0, 100),
-    "J1": (100, 100),
-    "J6": (173.97, 100),
-    "J2": (200, 100),
-    "J3": (300, 100),
-}
-NODES |= {"J6": (173.97, 100), "J2": (200, 100), "J3": (300, 100)}
+NODES = {"J0": (0.0, 100.0), "J1": (100.0, 100.0), "J6": (173.97, 100.0), "J2": (200.0, 100.0)}
+NODES |= {"J3": (300.0, 100.0), "J4": (100.0, 87.5), "J5": (200.0, 87.5)}
 EDGES = {"E0": "J0 J1", "E1": "J1 J6", "E7": "J6 J2", "E2": "J2 J3", "E3": "J1 J4", "E4": "J4 J5", "E5": "J5 J2"}
 CHOICES: Mapping[str, Callable[[int], int]] = {
     "all the first": lambda number: 0,
