@@ -75,6 +75,8 @@ class Car:
     """Whether the driver has parked on the way."""
     errands: tuple[Errand, ...] = ()
     """What people aboard ask for, by simulation time."""
+    trailer: bool = False
+    """Whether it tows one, for the law: it drives as without."""
     read_sign: tuple[Limit, str, str] | None = None
     """The limit that is signed here, and the unit and the country of its sign; None before departure."""
 
@@ -116,6 +118,8 @@ class Car:
         driving = traffic.state
         if self.signs is not None:
             driving, passed = self.signs.on(driving), tuple(map(self.signs.on, passed))
+        if self.trailer:
+            driving, passed = replace(driving, trailer=True), tuple(replace(each, trailer=True) for each in passed)
         elapsed_s = driving.time_s - self.departure_s
         local_time = (self.departure.astimezone(UTC) + timedelta(seconds=elapsed_s)).astimezone(
             self.departure.tzinfo

@@ -153,6 +153,7 @@ def couple(
     departure: datetime,
     links: tuple[LinkAt, ...] = (),
     errands: tuple[Errand, ...] = (),
+    trailer: bool = False,
 ) -> CoSimulation:
     """Couples a drive and a cockpit that has not looked outside yet.
 
@@ -166,6 +167,7 @@ def couple(
         departure: local time of the traffic's present state, zone-aware.
         links: the best available link over time, in seconds after departure.
         errands: what people aboard ask for, in seconds after departure.
+        trailer: whether the car tows one.
     """
     state, geo = traffic.state, Geo()
     car = Car(
@@ -178,6 +180,7 @@ def couple(
         state.time_s,
         None if scenario.origin is None else signs_of(geo.atlas.place(*scenario.origin).law),
         errands=tuple(replace(errand, at_s=state.time_s + errand.at_s) for errand in errands),
+        trailer=trailer,
     )
     shared = SharedTraffic(traffic, scenario.sumo.step_length_s)
     return CoSimulation(shared, car, car.sense(shared, (state,), (), 0.0))

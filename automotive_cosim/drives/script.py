@@ -73,6 +73,8 @@ class DriveScript:
     """Names of the driver profiles for school zones at their hours, one a zone, over and over again."""
     aboard: tuple[Occupant, ...] = ()
     """Who is in the car besides the driver."""
+    trailer: bool = False
+    """Whether the car tows a trailer, for which the law may have other limits."""
     signals: Mapping[str, bool | float | str] = field(default_factory=dict)
     """VSS paths and values at departure."""
     halts: tuple[HaltAt, ...] = ()

@@ -223,6 +223,7 @@ class SituationFinder:
             weather=plan.weather,
             departure=plan.start or self.scenario.start,
             links=self.scenario.connectivity,
+            trailer=start.trailer,
         )
         if self._observer.looks:
             world.on_look = self._observer.looked

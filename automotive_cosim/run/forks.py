@@ -38,10 +38,13 @@ from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.rerun import Player, Recorded, compare, played
 from automotive_cosim.traffic.chance import SEED_RANGE
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.running import fingerprint
 
 FOLLOWED_S = 180.0
 """On a drive, how long after an act its effects are followed: advice ends after two minutes
 (``departure.ADVICE_S``)."""
+COMPARED_EVERY = 5
+"""Moments from one comparison to the next of a fork with the trial: where both are the same, what comes is known."""
 MOST_ACTS = 40
 """Acts that are measured; each keeps a fork of the traffic until the end."""
 
@@ -124,6 +127,8 @@ class Forks(TrialObserver):
         self._forks: list[TrialFork] = []
         self._given = 0
         self._seen: dict[tuple[int, frozenset[int], int], list[Moment]] = {}
+        self._prints: dict[int, str] = {}
+        """Of the traffic of the trial, at some of its moments (``fingerprint``)."""
 
     def begun(self, session: Any, shot: Shot) -> None:
         """Forks at the beginning."""
@@ -136,6 +141,9 @@ class Forks(TrialObserver):
         """Notes what was driven; what comes before the beginning is not asked for."""
         if self.session is not None:
             self.moments.append(moment)
+            world = self.session.world
+            if len(self.moments) % COMPARED_EVERY == 0 and world.moment is moment and (now := _print(world)):
+                self._prints[len(self.moments) - 1] = now
 
     def foresee(self, action: Action) -> None:
         """Forks before an action that will command something."""
@@ -209,7 +217,8 @@ class Forks(TrialObserver):
     def driving(
         self, fork: TrialFork, without: frozenset[int], draw: int, until_s: float
     ) -> Iterator[Sequence[Moment]]:
-        """Drives on from a fork without some acts, second by second; gives nothing while others may go on."""
+        """Drives on from a fork without some acts, second by second; gives nothing while others may go on. Where
+        they make no difference any more, what comes is taken from the trial."""
         gone = self.commands(without)
         left: list[CommandRecord] = list(self.session.world.cockpit.given[fork.given :])
         with closing(fork.world.branch()) as world:
@@ -217,7 +226,8 @@ class Forks(TrialObserver):
                 seed = np.random.default_rng((self._seed, fork.at, draw)).integers(SEED_RANGE)
                 world.traffic.request(Redraw(int(seed)))
             yield [self.moments[fork.at]]
-            for before, now in pairwise(self.moments[fork.at :]):
+            is_same = not draw
+            for number, (before, now) in enumerate(pairwise(self.moments[fork.at :]), fork.at + 1):
                 if now.time_s > until_s or world.moment.driving.end is not None:
                     break
                 while left and left[0].time_s <= before.time_s + ROUNDING_S:
@@ -229,11 +239,22 @@ class Forks(TrialObserver):
                 world.traffic.start(min(TICK_S, tick_s))
                 yield ()
                 yield world.advance(tick_s)
+                is_same = is_same and world.moment.passed == now.passed
+                if is_same and number in self._prints and not gone.intersection(map(id, left)):
+                    if world.moment.signals == now.signals and _print(world) == self._prints[number]:
+                        yield [each for each in self.moments[number + 1 :] if each.time_s <= until_s]
+                        break
 
     def _fork(self) -> None:
         world, tracker = self.session.world.branch(), deepcopy(getattr(self.session, "tracker", None))
         self._ends.callback(world.close)
         self._forks.append(TrialFork(world, len(self.moments) - 1, len(self.session.world.cockpit.given), tracker))
+
+
+def _print(world: CoSimulation) -> str:
+    """Of the traffic of a drive; empty if it cannot be told."""
+    call = getattr(world.traffic.wrapped, "call", None)  # the traffic of some tests has none
+    return "" if call is None else str(call(fingerprint))
 
 
 def together(drives: Sequence[Iterator[Sequence[Moment]]]) -> list[list[Moment]]:

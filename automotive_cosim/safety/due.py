@@ -148,7 +148,8 @@ class DueScreen:
         return next(filter(self.is_due, self._near(point)), None)
 
     def check(self) -> Iterator[str]:
-        """Tries what the space stages where, and says what cannot come about, and how to mend it.
+        """Tries what the space stages where, and says what cannot come about, how to mend it, and in how many of the
+        places something comes due.
 
         The space's nominal point becomes one at which something is due, by place, time or seed, if there is one.
 
@@ -156,17 +157,20 @@ class DueScreen:
             UserError: nothing comes due anywhere.
         """
         if not self.screens:
+            yield "nothing has to be tried first: every run of this space can be judged"
             return
         nominal = self.space.nominal
         several = [each for each in self.space.factors if each.name in WHAT and isinstance(each, FactorChoices)]
         there: list[SearchPoint] = []
-        for values in list(product(*(each.values for each in several)))[:MOST_KINDS]:
+        tried = list(product(*(each.values for each in several)))[:MOST_KINDS]
+        for values in tried:
             fixed = dict(zip((each.name for each in several), values, strict=True))
             point = {**nominal, **fixed}
-            if (due := self.placed(point)) is not None:
+            near = [*self._near(point), *self._elsewhere(point)]
+            if (due := next(filter(self.is_due, near), None)) is not None:
                 there.append(due)
                 continue
-            reasons = [self.why_not(near) for near in self._near(point)]
+            reasons = [self.why_not(each) for each in near]
             told = ", ".join(f"{reason} ({reasons.count(reason)})" for reason in dict.fromkeys(reasons))
             mend = next((mend for mend in MENDS if self.is_due({**point, mend[0]: mend[1]})), None)
             mended = (
@@ -183,6 +187,16 @@ class DueScreen:
         if changed:
             self.space = nominal_at(self.space, there[0])
             yield f"the nominal combination has {changed}: as written, nothing is due there"
+        of = " and ".join(each.name for each in several)
+        yield f"driven without an agent: something comes due in {len(there)} of {counted(len(tried), 'choice')} of {of}"
+
+    def _elsewhere(self, point: SearchPoint) -> Iterator[SearchPoint]:
+        """Two points in which all is another but the traffic, and what is staged where."""
+        moving = [each for each in self.space.factors if each.name not in (*WHAT, "seed", "density")]
+        for step in (STEP, 2 * STEP):
+            moved = {each.name: each.at((each.unit(point[each.name]) + step) % 1.0) for each in moving}
+            if moved.items() - point.items():
+                yield {**point, **moved}
 
     def _near(self, point: SearchPoint) -> list[SearchPoint]:
         """The point and those beside it, each once."""
