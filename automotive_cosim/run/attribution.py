@@ -34,8 +34,8 @@ LATE_ACT = "an act too late"
 LACKING = frozenset({"goal", "in_time", "declared"})
 """The parts of a verdict that fail for want of an act."""
 REDRAWS, LEAST_REDRAWS = 4, 2
-"""Further draws of both, with and without, where leaving an act out changed anything on the road; where that is no more
-than chance after the fewer, so many."""
+"""Further draws of both, with and without, where leaving an act out changed anything on the road; as many as the
+fewer where it is no more than chance."""
 REDRAWN = 6.0
 """How long redraws and pairs take at most, as a multiple of the trial, so that many acts cost a few times it."""
 TOGETHER_S, MOST_PAIRS = 60.0, 15

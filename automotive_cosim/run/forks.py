@@ -44,7 +44,7 @@ FOLLOWED_S = 180.0
 """On a drive, how long after an act its effects are followed: advice ends after two minutes
 (``departure.ADVICE_S``)."""
 COMPARED_EVERY = 5
-"""Moments from one comparison to the next of a fork with the trial: where both are the same, what comes is known."""
+"""Moments from one comparison of a fork with the trial to the next: where they are the same, what comes is known."""
 MOST_ACTS = 40
 """Acts that are measured; each keeps a fork of the traffic until the end."""
 
@@ -240,10 +240,12 @@ class Forks(TrialObserver):
                 yield ()
                 yield world.advance(tick_s)
                 is_same = is_same and world.moment.passed == now.passed
-                if is_same and number in self._prints and not gone.intersection(map(id, left)):
-                    if world.moment.signals == now.signals and _print(world) == self._prints[number]:
-                        yield [each for each in self.moments[number + 1 :] if each.time_s <= until_s]
-                        break
+                is_over = number in self._prints and not gone.intersection(map(id, left))
+                if not (is_same and is_over and world.moment.signals == now.signals):
+                    continue
+                if _print(world) == self._prints[number]:
+                    yield [each for each in self.moments[number + 1 :] if each.time_s <= until_s]
+                    break
 
     def _fork(self) -> None:
         world, tracker = self.session.world.branch(), deepcopy(getattr(self.session, "tracker", None))

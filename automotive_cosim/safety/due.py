@@ -148,8 +148,8 @@ class DueScreen:
         return next(filter(self.is_due, self._near(point)), None)
 
     def check(self) -> Iterator[str]:
-        """Tries what the space stages where, and says what cannot come about, how to mend it, and in how many of the
-        places something comes due.
+        """Tries what the space stages where, and says what cannot come about, how to mend it, and where how much
+        comes due.
 
         The space's nominal point becomes one at which something is due, by place, time or seed, if there is one.
 
@@ -188,7 +188,8 @@ class DueScreen:
             self.space = nominal_at(self.space, there[0])
             yield f"the nominal combination has {changed}: as written, nothing is due there"
         of = " and ".join(each.name for each in several)
-        yield f"driven without an agent: something comes due in {len(there)} of {counted(len(tried), 'choice')} of {of}"
+        many = f"{len(there)} of {counted(len(tried), 'choice')} of {of}"
+        yield f"driven without an agent: something comes due in {many}"
 
     def _elsewhere(self, point: SearchPoint) -> Iterator[SearchPoint]:
         """Two points in which all is another but the traffic, and what is staged where."""
