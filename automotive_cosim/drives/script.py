@@ -106,6 +106,8 @@ def script_json(script: DriveScript) -> str:
         del values["coarse"]
     if not script.errands:
         del values["errands"]
+    if not script.trailer:
+        del values["trailer"]
     return json.dumps(json.loads(as_json(values)), indent=1)
 
 

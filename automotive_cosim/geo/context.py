@@ -226,7 +226,7 @@ def _lines(context: GeoContext) -> Iterator[Line]:
     yield Line(f"Road: {_road(context)}", "road")
     yield Line(f"Speed limit here: {_posted(context)}", "road")
     if context.driving.trailer:
-        yield Line("Vehicle: a car with a trailer", "vehicle")
+        yield Line("Vehicle: a car with a trailer", "motion")
     if context.road.limit_hours:
         yield Line(f"Posted for certain hours: {context.road.limit_hours}", "road")
     yield from _limits(context)

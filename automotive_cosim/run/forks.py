@@ -44,7 +44,7 @@ FOLLOWED_S = 180.0
 """On a drive, how long after an act its effects are followed: advice ends after two minutes
 (``departure.ADVICE_S``)."""
 COMPARED_EVERY = 5
-"""Moments from one comparison of a fork with the trial to the next: where they are the same, what comes is known."""
+"""Moments from one comparison of a fork with the trial to the next: while both are one, what comes is known."""
 MOST_ACTS = 40
 """Acts that are measured; each keeps a fork of the traffic until the end."""
 
@@ -226,7 +226,7 @@ class Forks(TrialObserver):
                 seed = np.random.default_rng((self._seed, fork.at, draw)).integers(SEED_RANGE)
                 world.traffic.request(Redraw(int(seed)))
             yield [self.moments[fork.at]]
-            is_same = not draw
+            is_same = bool(gone) and not draw
             for number, (before, now) in enumerate(pairwise(self.moments[fork.at :]), fork.at + 1):
                 if now.time_s > until_s or world.moment.driving.end is not None:
                     break
