@@ -36,7 +36,7 @@ LACKING = frozenset({"goal", "in_time", "declared"})
 REDRAWS, LEAST_REDRAWS = 4, 2
 """Further draws of both, with and without, where leaving an act out changed anything on the road; as many as the
 fewer where it is no more than chance."""
-REDRAWN = 6.0
+REDRAWN = 8.0
 """How long redraws and pairs take at most, as a multiple of the trial, so that many acts cost a few times it."""
 TOGETHER_S, MOST_PAIRS = 60.0, 15
 """Two acts that change nothing alone are left out together if they are no farther apart; the nearest first."""
@@ -205,7 +205,7 @@ def _came(forks: Forks, left: Sequence[ForkedAct]) -> Iterator[str]:
         "driver": [[event.time_s - begun_s, event.text] for event in driver_events(forks.moments)],
     }
     told = [JudgedAct(each.time_s - begun_s, each.words, Worth.NEUTRAL) for act in left for each in act.acts]
-    return (came.words for came in followed(told, timeline) if came.words)
+    return (came.words for came in followed(told, timeline))
 
 
 def _missing(forks: Forks) -> Iterator[ActEffect]:

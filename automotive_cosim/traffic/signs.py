@@ -41,8 +41,8 @@ class _Kept:
 class Signs:
     """Sets and removes limits. The lowest limit of the incidents applies, else the network's; where a sign of the
     scenario shows another speed than the road was built with, the lower of both. A sign over some lanes holds in
-    them, and one over all of them is known from afar. A sign counts up to the far side of the junction at the end of
-    its road, as the ego's limit does; lanes across it have it too."""
+    them, and one over all of them is known from afar. A sign counts up to the far side of the junction at the end
+    of its road, as the ego's limit does; lanes across it have it too."""
 
     def __init__(self, sumo: LibSumo, network: Network, variable: Iterable[str]) -> None:
         """Keeps watch on the edges on which SUMO itself changes the limit."""
