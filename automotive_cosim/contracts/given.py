@@ -189,6 +189,19 @@ class PromptLength(StrEnum):
         return f"own{self.sha256[:8]}" if self.file else str(self)
 
 
+class DriverAttention(StrEnum):
+    """Whether what the agent shows and says takes the driver's eyes and mind off the road."""
+
+    OFF = "off"
+    """The driver is attentive whatever happens."""
+    ON = "on"
+    """It does (``cosim.attention``)."""
+
+    @property
+    def is_limited(self) -> bool:
+        return self is DriverAttention.ON
+
+
 class ToldPolicy(StrEnum):
     """Which rules an agent is told beside the driver's words; it is held to the house's in any case."""
 

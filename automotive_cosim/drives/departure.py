@@ -80,6 +80,7 @@ def depart(
             links=scenario.connectivity,
             errands=script.errands,
             trailer=script.trailer,
+            attention=script.attention,
         )
     except BaseException:
         traffic.close()
@@ -161,6 +162,7 @@ def ego_plan(script: DriveScript, scenario: Scenario) -> EgoPlan:
         halts=script.halts,
         incidents=script.incidents,
         advice_s=ADVICE_S,
+        attention=script.attention,
         settles_s=SETTLES_S,
         brakes_early=True,
     )

@@ -146,6 +146,14 @@ class DriveSession(JudgedSession):
         """The harm on this drive, and on the do-nothing drive of the same length."""
         return harm(self.moments), harm(self.baseline_moments)
 
+    @property
+    def harmed_s(self) -> float:
+        """For how much longer than the do-nothing drive it was near a collision, where attention is limited."""
+        if self.moments[0].awareness is None:
+            return 0.0
+        mine, baseline = self.harms
+        return max(0.0, mine.short_ttc_s - baseline.short_ttc_s)
+
     def thinking(self, seconds: float) -> TakesTime[None]:
         """As in a session, at most to the end of the drive."""
         return super().thinking(min(seconds, max(0.0, self._left_s())))

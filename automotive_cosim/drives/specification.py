@@ -80,6 +80,8 @@ class DriveSpec:
         drive = script or self.script
         if self.conditions.language is not Language.ENGLISH:
             drive = replace(drive, signals={HMI.LANGUAGE.path: str(self.conditions.language), **drive.signals})
+        if self.conditions.attention.is_limited:
+            drive = replace(drive, attention=True)
         setup = SessionSetup(channels, self.conditions, self.max_steps, drive.duration_s, lean=lean)
         world = depart(drive, simulations, observer, traffic)
         try:

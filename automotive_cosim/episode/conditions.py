@@ -21,6 +21,7 @@ from automotive_cosim.contracts.given import (
     OWN_PROMPT,
     Channel,
     Clock,
+    DriverAttention,
     FeedbackDetail,
     GeoInput,
     Interface,
@@ -167,6 +168,17 @@ class Conditions:
         ),
     ] = ToldPolicy.NONE  # fmt: skip
     """Which rules the agent is told beside the driver's words: none, or those of the ``house``."""
+
+    attention: Annotated[
+        DriverAttention,
+        OneOf(DriverAttention, "attention"),
+        Words(
+            "Attention", "attention {}", "attention_{}", "Success by the driver's attention",
+            "Whether what the agent shows and says takes the driver's attention off the road (on) or not (off).",
+        ),
+    ] = DriverAttention.OFF  # fmt: skip
+    """Whether what the agent shows and says takes the driver's attention off the road, so that he brakes later and
+    keeps gaps worse (``on``), or not (``off``)."""
 
     @classmethod
     def named(cls, values: Mapping[str, object]) -> Conditions:

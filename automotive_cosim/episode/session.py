@@ -32,6 +32,7 @@ from automotive_cosim.contracts import (
     RoadNetwork,
 )
 from automotive_cosim.contracts.given import ToldPolicy
+from automotive_cosim.cosim.attention import Asked
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.episode.observer import Observer
@@ -157,6 +158,7 @@ class Session:
         if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
             said = (self._reply(action.text or ""),)
             cost_s = spoken_s(action.text or "", *said)
+        self._ask(action, said)
         if action.action_type is ActionType.STATUS:
             self.declared, self.reason = action.goal_status, action.reason
         yield from self._proceed(action, feedback, cost_s, said)
@@ -239,6 +241,16 @@ class Session:
     def _check_open(self) -> None:
         if self.end is not None:
             raise RuntimeError(f"the episode is over ({self.end}); begin another one")
+
+    def _ask(self, action: Action, said: tuple[str, ...]) -> None:
+        """An action asks for the driver's attention: a touch for the eyes, spoken words for the mind."""
+        kind, text = action.action_type, action.text or ""
+        if kind in BY_HAND:
+            self.world.ask(Asked(self.world.moment.time_s, look_s=self.setup.action_cost_s))
+        elif kind is ActionType.ANSWER:
+            self.world.ask(Asked(self.world.moment.time_s, hear_s=spoken_s(text)))
+        elif said:
+            self.world.ask(Asked(self.world.moment.time_s, talk_s=spoken_s(text, *said)))
 
     def _barred(self, action: Action) -> str:
         """Why an agent with this interface cannot act so; empty if it can."""

@@ -188,7 +188,10 @@ class SituationFinder:
         weather = self.scenario.weather if start.weather is None else (WeatherAt(0.0, start.weather),)
         driver = start.driver or self.scenario.ego.driver
         reactions = draws.seed(Purpose.DRIVER)
-        plan = EgoPlan(trip, driver, reactions, weather, departure, parked=start.parked, wait_s=wait_s)
+        is_limited = self._spec.conditions.attention.is_limited
+        plan = EgoPlan(
+            trip, driver, reactions, weather, departure, parked=start.parked, wait_s=wait_s, attention=is_limited
+        )
         traffic = simulation.depart(plan)
         if plan.weather:
             return plan, traffic
@@ -224,6 +227,7 @@ class SituationFinder:
             departure=plan.start or self.scenario.start,
             links=self.scenario.connectivity,
             trailer=start.trailer,
+            attention=plan.attention,
         )
         if self._observer.looks:
             world.on_look = self._observer.looked

@@ -63,7 +63,11 @@ class Step:
             "connectivity": plain(moment.connectivity),
             "context": moment.context.text(),
             "events": [plain(event) for event in moment.events],
-        } | ({SAID: list(self.said)} if self.said else {})
+        } | {
+            name: value
+            for name, value in ((SAID, list(self.said)), ("awareness", moment.awareness))
+            if value not in ([], None)
+        }
 
 
 def digests(step: Json) -> Json:

@@ -17,6 +17,7 @@ from functools import partial
 from importlib.metadata import version
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -229,6 +230,13 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialSetup]) -> Iterat
         yield Problem(MANIFEST, "starts", "are not in order")
 
 
+def _as_of(today: Any, found: Any) -> Any:
+    """A part of a row without what that part of a line had no key for when it was written."""
+    if isinstance(today, dict) and isinstance(found, dict):
+        return {name: value for name, value in today.items() if name in found}
+    return today
+
+
 def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) -> Iterator[Problem]:
     """Lines with unknown fields or about an episode that has a verdict already; in a bundle, also any second line
     of an episode, and lines that are not in their only valid form."""
@@ -245,7 +253,8 @@ def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) 
             final.add(line["id"])
         for name in line.keys() - known:
             yield Problem(ROWS, f"line {number} {name}", "is not a field of a row")
-        if strict and text != json.dumps(as_json(rows[line["id"]]), ensure_ascii=False):
+        written = {name: _as_of(value, line.get(name)) for name, value in as_json(rows[line["id"]]).items()}
+        if strict and text != json.dumps(written, ensure_ascii=False):
             yield Problem(ROWS, f"line {number}", "is not in the form in which `publish bundle` writes it")
     if strict and names != sorted(names):
         yield Problem(ROWS, "", "is not sorted by id")
