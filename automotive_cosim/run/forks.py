@@ -44,8 +44,6 @@ from automotive_cosim.traffic.running import fingerprint
 FOLLOWED_S = 180.0
 """On a drive, how long after an act its effects are followed: advice ends after two minutes
 (``departure.ADVICE_S``)."""
-COMPARED_EVERY = 5
-"""Moments from one comparison of a fork with the trial to the next: while both are one, what comes is known."""
 MOST_ACTS = 40
 """Acts that are measured; each keeps a fork of the traffic until the end."""
 
@@ -133,7 +131,7 @@ class Forks(TrialObserver):
         self._given = self._asked = 0
         self._seen: dict[tuple[int, frozenset[int], int], list[Moment]] = {}
         self._prints: dict[int, str] = {}
-        """Of the traffic of the trial, at some of its moments (``fingerprint``)."""
+        """Of the traffic of the trial, at the end of each step (``fingerprint``)."""
 
     def begun(self, session: Any, shot: Shot) -> None:
         """Forks at the beginning."""
@@ -147,7 +145,7 @@ class Forks(TrialObserver):
         if self.session is not None:
             self.moments.append(moment)
             world = self.session.world
-            if len(self.moments) % COMPARED_EVERY == 0 and world.moment is moment and (now := _print(world)):
+            if world.moment is moment and (now := _print(world)):
                 self._prints[len(self.moments) - 1] = now
 
     def foresee(self, action: Action) -> None:

@@ -49,6 +49,16 @@ MOTORWAYS = (
         cast=(*DRIVER, *CAR, "leader_brakes", *ROAD, "wipers", "range"),
     ),
     Family(
+        id="inntal_december",
+        about="The same valley on a December afternoon, at dusk and in the frost.",
+        season=Season.WINTER,
+        scenario="inntal",
+        trips=("gantries", "open"),
+        starts=("2026-12-15T15:40:00", "2026-12-20T17:10:00"),
+        weather=Weather(-2.0, 88.0, 0.0, 3, 90.0, 9000.0, 8.0),
+        cast=(*DRIVER, *CAR, "leader_brakes", "blue_light", "breakdown", *DARK, *COLD, "wipers"),
+    ),
+    Family(
         id="peripherique_november",
         about="The périphérique and the streets beside it on a November evening.",
         season=Season.WINTER,
