@@ -46,7 +46,7 @@ def run_drive(
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.trial import Limits, run_trial
 
-    under = Conditions.named(given(settings))
+    under = Conditions.named(given(settings)).at(seed)
     limits = Limits().of_drives.within(limited.tokens, limited.seconds)
     told = instructions(under.prompt)
     budget = AgentSettings(

@@ -161,7 +161,7 @@ class DriveSession(JudgedSession):
     def stepping(self, action: Action) -> TakesTime[None]:
         """As in a session; a spoken answer is noted, and a declared status ends nothing."""
         said = spoken(action, self.world.moment.time_s)
-        if said is not None:
+        if said is not None and self._is_understood:
             self.acts.append(said)
         yield from super().stepping(action)
 
