@@ -238,7 +238,7 @@ class Forks(TrialObserver):
                 seed = np.random.default_rng((self._seed, fork.at, draw)).integers(SEED_RANGE)
                 world.traffic.request(Redraw(int(seed)))
             yield [self.moments[fork.at]]
-            is_same = bool(gone) and not draw and world.car.attention is None  # which no moment has whole
+            is_same = bool(without) and not draw and world.car.attention is None  # which no moment has whole
             for number, (before, now) in enumerate(pairwise(self.moments[fork.at :]), fork.at + 1):
                 if now.time_s > until_s or world.moment.driving.end is not None:
                     break
