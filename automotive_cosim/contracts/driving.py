@@ -58,8 +58,8 @@ class Limit:
 
     @property
     def words(self) -> str:
-        """How it is posted, before ``on`` and a road's name."""
-        return "shown by a variable sign" if self.source is LimitSource.VARIABLE else "posted"
+        """How it is posted, before a road's name."""
+        return "posted on a variable sign of" if self.source is LimitSource.VARIABLE else "posted on"
 
     @property
     def posted_mps(self) -> float | None:

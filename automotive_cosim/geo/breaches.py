@@ -230,7 +230,7 @@ def binding_limit(context: GeoContext) -> BindingLimit | None:
     signed = here.is_posted
     found: list[BindingLimit] = []
     if here.posted_mps is not None:
-        words = f"{here.words} on {context.road.name or 'this road'}"
+        words = f"{here.words} {context.road.name or 'this road'}"
         found.append(BindingLimit(here, SIGN, words, "sign", Status.VERIFIED))
     elif not signed and context.default_limit is not None:
         found += _of_rule(context.default_limit)

@@ -290,7 +290,7 @@ def _posted(context: GeoContext) -> str:
         return "not posted" + ("" if assumed_kmh is None else f"; the map assumes {_speed(assumed_kmh, context)}")
     if context.posted_limit_kmh is None:
         return "none posted"
-    return f"{_speed(context.posted_limit_kmh, context)} ({road.limit.words} on {road.name or 'this road'})"
+    return f"{_speed(context.posted_limit_kmh, context)} ({road.limit.words} {road.name or 'this road'})"
 
 
 def _speed(kmh: float, context: GeoContext) -> str:
