@@ -19,14 +19,13 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.layout import DUE
 from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.safety.space import FactorChoices, FactorRange, FactorValue, SearchPoint, Space, said
 from automotive_cosim.safety.trying import job_of, trial_of
 from automotive_cosim.traffic.fork import Simulations
 
-FILE = "due.json"
-"""Of a search's folder: by trial, why nothing comes due in it; empty if something does."""
 TIMES_S = (STAGE_S, 30.0, 90.0, 120.0, 150.0)
 """When something is staged, if a space with a stage does not say: what comes too suddenly at one instant, or never,
 comes in time at another."""
@@ -113,7 +112,7 @@ class DueScreen:
 
     def __post_init__(self) -> None:
         """Reads what is known."""
-        path = self.folder / FILE
+        path = self.folder / DUE
         self._known = dict(read_json(path)) if path.is_file() else {}
 
     @property
@@ -136,7 +135,7 @@ class DueScreen:
         if name not in self._known:
             self.tried += 1
             self._known[name] = why_not(job, self.space.rule.events, self.simulations)
-            write_whole(make_folder(self.folder) / FILE, json.dumps(self._known, indent=1) + "\n")
+            write_whole(make_folder(self.folder) / DUE, json.dumps(self._known, indent=1) + "\n")
         return self._known[name]
 
     def is_due(self, point: SearchPoint) -> bool:
@@ -186,7 +185,7 @@ class DueScreen:
         changed = ", ".join(said(name, value) for name, value in there[0].items() if value != nominal[name])
         if changed:
             self.space = nominal_at(self.space, there[0])
-            yield f"the nominal combination has {changed}: as written, nothing is due there"
+            yield f"as written, nothing is due with everything nominal; taken as nominal: {changed}"
         of = " and ".join(each.name for each in several)
         many = f"{len(there)} of {counted(len(tried), 'choice')} of {of}"
         yield f"driven without an agent: something comes due in {many}"

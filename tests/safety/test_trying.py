@@ -138,5 +138,7 @@ def test_what_cannot_come_about_is_said_before_with_how_to_mend_it(
     again = due.DueScreen(space, asked, simulations, tmp_path)
     assert list(again.check()) == [line, told]
     assert again.tried == 0, "what was tried is kept"
+    with trying(space, asked, tmp_path, lambda job, folder: pytest.fail("nothing is run")):
+        pass  # the search itself goes on in that folder
     with pytest.raises(UserError, match="nothing comes due in this space"):
         list(due.DueScreen(none, asked, simulations, tmp_path).check())
