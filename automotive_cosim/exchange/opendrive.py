@@ -3,8 +3,9 @@
 netconvert 1.28 states version 1.4, but writes an ``offset`` that came with 1.5. It gives curves inexact lengths. It
 crosses some junctions, most of them by turning back, with a jump of the heading, so that lanes do not meet. In
 left-hand networks it puts the lanes of junctions on the left, but numbers them as on the right. Its ids of signals,
-``c0_3``, are no numbers, which some readers expect: signals are numbered here, and have SUMO's ids as names.
-Coordinates are those of the network, as in every record.
+``c0_3``, are no numbers, which some readers expect: signals are numbered here, and have SUMO's ids as names. It
+leaves out who may use a lane: their ``access`` is written here. Coordinates are those of the network, as in every
+record.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import copy
 from automotive_cosim.formats.xml import read_tree, write_xml
-from automotive_cosim.traffic.network import drives_on_left
+from automotive_cosim.traffic.network import drives_on_left, open_to
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
 VERSION = "1.7"
@@ -32,8 +33,22 @@ TURNS_BACK_ABOVE_RAD = 2.5
 """So large a turn is one back, to the side on which it ends."""
 SHORT_M = 1e-6
 """By so much a curve is stated shorter than it is: readers that look for a place beyond its end find none."""
+NAMES = "--output.original-names"
+"""Lets netconvert write the ids of SUMO's edges."""
 POINT_M, ROOM_M = 0.01, 1.0
 """A shorter way through a junction is a point; the road before it ends this much earlier."""
+
+ACCESS = {
+    "passenger": "passengerCar",
+    "bus": "bus",
+    "taxi": "taxi",
+    "truck": "truck",
+    "delivery": "delivery",
+    "emergency": "emergency",
+    "motorcycle": "motorcycle",
+    "bicycle": "bicycle",
+}
+"""Restrictions of OpenDRIVE 1.7 (its ``e_accessRestrictionType``) by SUMO's class of vehicle."""
 
 Pose = tuple[float, float, float]
 """x, y and heading in radians, counter-clockwise from east."""
@@ -53,13 +68,33 @@ def write_opendrive(net: Path, target: Path) -> None:
         scratch = Path(name)
         ours = "road.net.xml.gz" if net.name.endswith(".gz") else "road.net.xml"
         copy(net, scratch / ours, bounds.UNPACKED_BYTES)
-        ok, printed = run("netconvert", ("-s", ours, "--opendrive-output=road.xodr"), scratch)
+        ok, printed = run("netconvert", ("-s", ours, "--opendrive-output=road.xodr", NAMES), scratch)
         if not ok:
             raise ScenarioError(f"netconvert cannot write {net} as OpenDRIVE: {first_error(printed)}")
         root = read_tree(scratch / "road.xodr", error=ScenarioError)
+        tell_access(root, read_tree(scratch / ours, error=ScenarioError))
     mend(root, left_hand=drives_on_left(net))
     ET.indent(root)
     write_xml(target, root)
+
+
+def tell_access(root: ET.Element, network: ET.Element) -> None:
+    """Writes who may use a lane: who may not on one for cars, who may on any other.
+
+    Args:
+        root: netconvert's file with ``NAMES``; changed in place.
+        network: of SUMO, from which it was made.
+    """
+    edges = {edge.attrib["id"]: edge.findall("lane") for edge in network.iter("edge")}
+    for road in root.iter("road"):
+        for named in road.findall("userData"):  # NAMES wrote them
+            road.remove(named)
+            for lane, of_sumo in zip(reversed(_lanes(road)), edges[named.attrib["value"]], strict=True):
+                for_cars = open_to(of_sumo.attrib)
+                for vehicle_class, restriction in ACCESS.items():
+                    if open_to(of_sumo.attrib, vehicle_class) is not for_cars:
+                        rule = "deny" if for_cars else "allow"
+                        ET.SubElement(lane, "access", sOffset="0", rule=rule, restriction=restriction)
 
 
 def mend(root: ET.Element, *, left_hand: bool) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from automotive_cosim.osm.links import Link, Links
+from automotive_cosim.traffic.network import open_to
 
 SHORT_M = 50.0
 """On a shorter edge there is no room to sort oneself into lanes, so it is never parted."""
@@ -98,7 +99,7 @@ def _read(text: str, links: Links) -> _Lanes:
     lanes = _Lanes(links=links.of)
     for edge, inner in _EDGE.findall(text):
         of_edge = [dict(_ATTRIBUTE.findall(lane)) for lane in _LANES.findall(inner)]
-        lanes.open[edge] = [_open_to_cars(lane) for lane in of_edge]
+        lanes.open[edge] = [open_to(lane) for lane in of_edge]
         lanes.length_m[edge] = float(of_edge[0]["length"])
     for edge, onward in lanes.links.items():
         for link in onward:
@@ -109,13 +110,6 @@ def _read(text: str, links: Links) -> _Lanes:
 _EDGE = re.compile(r'<edge id="([^":][^"]*)"[^>]*>(.*?)</edge>', re.DOTALL)
 _LANES = re.compile(r"<lane ([^>]*)>")
 _ATTRIBUTE = re.compile(r'\b(allow|disallow|length)="([^"]*)"')
-
-
-def _open_to_cars(lane: Mapping[str, str]) -> bool:
-    allowed = lane.get("allow")
-    if allowed is not None:
-        return allowed == "all" or "passenger" in allowed.split()
-    return not {"passenger", "all"} & set(lane.get("disallow", "").split())
 
 
 _LANE = re.compile(r'<lane id="([^"]*)"[^>]*>')

@@ -240,7 +240,7 @@ class _RowCounts:
             self.judged += by * (row.error is None)
             self.successes += by * row.has_succeeded
             self.errors += by * (row.error is not None)
-            self.closed += by * (not _is_open(row))
+            self.closed += by * (not is_open(row))
 
 
 class _Batch(Generic[J, R]):
@@ -270,7 +270,7 @@ class _Batch(Generic[J, R]):
         self._newest: R | None = None
         self._failures: dict[str, list[str]] = defaultdict(list)
         self._places: list[_Place[J, R]] = []
-        self._queue = JobQueue(job for job in jobs if _is_open(store.rows.get(job.id)))
+        self._queue = JobQueue(job for job in jobs if is_open(store.rows.get(job.id)))
         self._counts = _RowCounts()
         self._alike: dict[Hashable, list[J]] = defaultdict(list)
         """Jobs that wait for the same situation."""
@@ -280,7 +280,7 @@ class _Batch(Generic[J, R]):
             situation, row = job.situation, store.rows.get(job.id)
             self._alike[situation].append(job)
             self._counts.count(row)
-            if row is not None and not _is_open(row):
+            if row is not None and not is_open(row):
                 tried.add(situation)
                 if row.error is None:
                     earlier.append(JobTurn(job, False, row.wall_seconds))
@@ -417,13 +417,17 @@ class _Batch(Generic[J, R]):
         self._counts.count(self._newest)
         self._store.append(self._newest)
         self._ran += 1
-        self._given_up += _is_open(row)
+        self._given_up += is_open(row)
         self._tell(self.progress)
         self._give_up_like(job, row)
 
     def _note_spent(self) -> None:
+        """Writes down what has been spent, for ``spent_before`` of a later start."""
         if self._limit is not None:
-            note_spent(self._store, self._limit)
+            try:
+                write_whole(self._store.folder / SPENT, json.dumps(asdict(self._limit.spent())) + "\n")
+            except OSError as error:
+                raise cannot_write(self._store.folder, error) from error
 
     def _give_up_like(self, job: J, row: R) -> None:
         """Records the jobs whose situation is known not to arise as errors, without another attempt."""
@@ -431,18 +435,6 @@ class _Batch(Generic[J, R]):
             for other in self._alike.pop(job.situation, []):
                 if self._queue.remove(other):
                     self._ended(other, failed(other, row.error_kind, row.error))
-
-
-def note_spent(store: Store[R], meter: MeterHandle) -> None:
-    """Writes down what has been spent, for ``spent_before`` of a later start.
-
-    Raises:
-        UserError: it cannot be written.
-    """
-    try:
-        write_whole(store.folder / SPENT, json.dumps(asdict(meter.spent())) + "\n")
-    except OSError as error:
-        raise cannot_write(store.folder, error) from error
 
 
 def spent_before(store: Store[R]) -> Spent:
@@ -456,6 +448,6 @@ def spent_before(store: Store[R]) -> Spent:
     return Spent(max(tokens, noted.tokens), max(usd, noted.usd))
 
 
-def _is_open(row: JobRow | None) -> bool:
+def is_open(row: JobRow | None) -> bool:
     """Whether a job must run: it has no row yet, or that of an error that may not recur."""
     return row is None or (row.error is not None and row.error_kind not in FINAL_KINDS)

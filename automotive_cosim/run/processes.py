@@ -1,4 +1,4 @@
-"""Runs jobs in processes of this machine."""
+"""Runs jobs in processes of this machine: others, or this one."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 import signal
 import threading
 from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager, suppress
+from contextlib import AbstractContextManager, ExitStack, suppress
 from dataclasses import dataclass
 from multiprocessing import connection, parent_process
 from multiprocessing.connection import Connection
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Generic
 
 from automotive_cosim.agents.cleanup import children, end_all, strangers, take_orphans
 from automotive_cosim.run.budget import Meter, MeterHandle, Spent, served
-from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
+from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner, Worker
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage, telling
 
@@ -47,11 +47,43 @@ class Processes:
         """See ``Executor.metered``; the meter is in this process."""
         return served(Meter(budget, before))
 
-    def start(self, opener: Opener[J, R], folder: Path) -> _Process[J, R]:
+    def start(self, opener: Opener[J, R], folder: Path) -> Worker[J, R]:
         return _Process(opener, folder)
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
         return connection.wait(handles, timeout_s)
+
+
+class Here(Processes):
+    """Runs jobs in this process, one by one, for those that depend on earlier rows; none is ended early."""
+
+    def start(self, opener: Opener[J, R], folder: Path) -> _Here[J, R]:
+        return _Here(opener, folder)
+
+    def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
+        return handles
+
+
+class _Here(Generic[J, R]):
+    is_ready, stage = True, JobStage()
+
+    def __init__(self, opener: Opener[J, R], folder: Path) -> None:
+        self._ends, self._folder = ExitStack(), folder
+        self._run = self._ends.enter_context(opener())
+        self._answer: R | CannotWrite | None = None
+
+    @property
+    def handles(self) -> Sequence[Any]:
+        return (self,)
+
+    def give(self, job: J) -> None:
+        self._answer = _answered(self._run, job, self._folder)
+
+    def answer(self) -> R | CannotWrite | None:
+        return self._answer
+
+    def end(self, *, at_once: bool) -> None:
+        self._ends.close()
 
 
 class _Ready:
@@ -131,11 +163,14 @@ def _work(jobs: Connection, opener: Opener[J, R], folder: Path, environment: Map
     with opener() as run, telling(jobs.send):
         jobs.send(_Ready())
         while (job := jobs.recv()) is not None:
-            try:
-                answer: R | CannotWrite = run(job, folder)
-            except OSError as error:
-                answer = CannotWrite(error)
-            jobs.send(answer)
+            jobs.send(_answered(run, job, folder))
+
+
+def _answered(run: Runner[J, R], job: J, folder: Path) -> R | CannotWrite:
+    try:
+        return run(job, folder)
+    except OSError as error:
+        return CannotWrite(error)
 
 
 def _end_with_parent() -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -14,10 +14,10 @@ from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.run import worker
-from automotive_cosim.run.batch import FINAL_KINDS, Progress, note_spent, run_jobs, spent_before
-from automotive_cosim.run.executor import Executor, Runner
+from automotive_cosim.run.batch import Progress, is_open, run_jobs, spent_before
+from automotive_cosim.run.executor import Executor, Opener, Runner
 from automotive_cosim.run.plan import Plan, PlannedTrial
-from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.processes import Here, Processes
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import Store, opened, replan
@@ -101,28 +101,14 @@ class Trying:
             job = job_of(self.plan, trial)
         except UserError as error:
             return TriedOutcome(None, False, error=f"cannot be run: {error}")
-        row = self.store.rows.get(job.id)
-        if row is None or (row.error is not None and row.error_kind not in FINAL_KINDS):
-            row = self._run(job)
-            if row.error is not None and row.error_kind not in FINAL_KINDS:
-                row = replace(self._run(job), attempts=2)
-            self._add(trial)
-            self.store.append(row)
-            self.ran += 1
-            self.tell(row)
-        elif trial not in self.plan.trials:
-            self._add(trial)
-        return outcome_of(row, self.space.rule)
-
-    def _run(self, job: TrialSetup) -> TrialRow:
-        if refusal := self.stop or self.limit.refusal():
-            raise BudgetSpentError(refusal)
-        since_s = time.monotonic()
-        row = replace(self.runner(job, self.store.folder), wall_seconds=round(time.monotonic() - since_s, 3))
-        note_spent(self.store, self.limit)
-        if row.error_kind == BudgetSpentError.__name__:
-            raise BudgetSpentError(str(row.error))
-        return row
+        if is_open(self.store.rows.get(job.id)):
+            if self.stop:
+                raise BudgetSpentError(self.stop)
+            ended = self._run([(job, trial)], Here(), lambda: nullcontext(self.runner))
+            if ended.stopped:
+                raise BudgetSpentError(ended.stopped)
+        self._add(trial)
+        return outcome_of(self.store.rows[job.id], self.space.rule)
 
     def ahead(self, points: Iterable[SearchPoint]) -> None:
         """Runs points at the same time that will be asked for one by one; those that cannot be run are left out.
@@ -130,22 +116,30 @@ class Trying:
         Raises:
             as ``run.batch.run_jobs``.
         """
-        jobs: dict[str, TrialSetup] = {}
-        trials: dict[str, PlannedTrial] = {}
+        tries: dict[str, tuple[TrialSetup, PlannedTrial]] = {}
         for point in points:
             with suppress(UserError):
                 trial = trial_of(point)
                 job = job_of(self.plan, trial)
-                jobs[job.id], trials[job.id] = job, trial
+                tries[job.id] = job, trial
+        self._run(tries.values(), self.executor, partial(worker.trials, Pictures.NONE, self.limit.meter))
+
+    def _run(
+        self,
+        tries: Collection[tuple[TrialSetup, PlannedTrial]],
+        executor: Executor,
+        opener: Opener[TrialSetup, TrialRow],
+    ) -> Progress[TrialRow]:
+        trials = {job.id: trial for job, trial in tries}
 
         def ended(progress: Progress[TrialRow]) -> None:
             if progress.ended is not None:
                 self._add(trials[progress.ended.id])
+                self.ran += 1
                 self.tell(progress.ended)
 
-        opener = partial(worker.trials, Pictures.NONE, self.limit.meter)
-        every = list(jobs.values())
-        run_jobs(every, self.store, opener, executor=self.executor, limit=self.limit, tell=ended)
+        jobs = [job for job, _ in tries]
+        return run_jobs(jobs, self.store, opener, executor=executor, retries=1, limit=self.limit, tell=ended)
 
     def _add(self, trial: PlannedTrial) -> None:
         if trial not in self.plan.trials:

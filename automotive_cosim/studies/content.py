@@ -81,12 +81,13 @@ class ShownStudy:
 
 
 CONTENTS = {
-    RerouteSettings.kind: "reroute.results:Study",
-    CongestionSettings.kind: "congestion.results:CongestionStudy",
-    AdoptionSettings.kind: "adoption.adoption:AdoptionStudy",
-    DaysSettings.kind: "days.days:DaysStudy",
+    RerouteSettings.kind: ("reroute.results:Study", ""),
+    CongestionSettings.kind: ("congestion.results:CongestionStudy", "congestion.page:shown"),
+    AdoptionSettings.kind: ("adoption.adoption:AdoptionStudy", "adoption.page:shown"),
+    DaysSettings.kind: ("days.days:DaysStudy", "days.page:shown"),
 }
-"""The content of each kind of study, beneath ``automotive_cosim.studies``."""
+"""The content of each kind of study, and what its report shows unless it has pages of its own; beneath
+``automotive_cosim.studies``."""
 
 
 def load_study(folder: Path | str) -> pd.DataFrame:
@@ -114,8 +115,38 @@ def _lines(folder: Path) -> list[Json]:
     kind = read_manifest(folder)["plan"].get("study")
     if kind not in CONTENTS:
         raise UserError(f"{folder} is no study; automotive_cosim.load_results reads evaluations")
-    content: type[StudyContent[Any, Any]] = resolve_name(f"automotive_cosim.studies.{CONTENTS[kind]}")
-    return list(content.read(folder).lines())
+    return list(read_study(folder, kind).lines())
+
+
+def read_study(folder: Path, kind: str) -> StudyContent[Any, Any]:
+    """The content of a folder of a kind, even of a running study.
+
+    Raises:
+        UserError: it is not such a study's folder, or is damaged.
+    """
+    content: type[StudyContent[Any, Any]] = _resolved(CONTENTS[kind][0])
+    return content.read(folder)
+
+
+def shown_of(study: StudyContent[Any, Any]) -> ShownStudy:
+    """What the report of a study of a whole network shows."""
+    shown: ShownStudy = _resolved(CONTENTS[study.plan.kind][1])(study)
+    return shown
+
+
+def write_report(folder: Path) -> Path:
+    """Writes the report of a study of a whole network into its folder; returns ``report.html``.
+
+    Raises:
+        UserError: the folder is damaged, or cannot be written.
+        SetupError: the extra ``reports`` is not installed.
+    """
+    study = read_study(folder, read_manifest(folder)["plan"]["study"])
+    return write_shown(study, shown_of(study))
+
+
+def _resolved(name: str) -> Any:
+    return resolve_name(f"automotive_cosim.studies.{name}")
 
 
 def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:

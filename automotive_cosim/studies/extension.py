@@ -31,7 +31,7 @@ KINDS = {
         f"{HOME}.reroute.decisions:attributed",
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
-    CongestionSettings.kind: ResultsKind(f"{HOME}.congestion.page:write_congestion", "seed"),
-    AdoptionSettings.kind: ResultsKind(f"{HOME}.adoption.page:write_adoption", "seed"),
-    DaysSettings.kind: ResultsKind(f"{HOME}.days.page:write_days", "share of a seed"),
+    CongestionSettings.kind: ResultsKind(f"{HOME}.content:write_report", "seed"),
+    AdoptionSettings.kind: ResultsKind(f"{HOME}.content:write_report", "seed"),
+    DaysSettings.kind: ResultsKind(f"{HOME}.content:write_report", "share of a seed"),
 }

@@ -2,21 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import option
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.incidents import AnyIncident, Incident
+from automotive_cosim.run.executor import Job, R
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.studies.settings import TrafficSettings
 
 P = TypeVar("P", bound=TrafficSettings)
+
+
+@dataclass(frozen=True, slots=True)
+class SeedJob(Job, Generic[P, R]):
+    """The traffic of one seed of a plan."""
+
+    plan: P
+    seed: int
+    row: Callable[..., R]
+    """Its kind of row."""
+    limit_s: float
+
+    @property
+    def id(self) -> str:
+        """Its id, which can be a file name."""
+        return f"seed{self.seed}"
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """The traffic that it warms up."""
+        return self.plan.scenario, self.seed
+
+    @property
+    def wall_s(self) -> float:
+        """Limit of its wall time."""
+        return self.limit_s
+
+    def planned(self) -> R:
+        """Its row before it runs."""
+        return self.row(id=self.id, scenario=self.plan.scenario, seed=self.seed)
 
 
 @lru_cache(maxsize=4)

@@ -21,7 +21,7 @@ from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.mirror import mirrored
-from automotive_cosim.traffic.network import Network, Shape, open_to_cars, quantity, read_network
+from automotive_cosim.traffic.network import Network, Shape, open_to, quantity, read_network
 from automotive_cosim.traffic.options import FALSE, TRUE, Configuration
 
 KINDS = {
@@ -91,7 +91,7 @@ def placed(network: Network, scenario: Scenario) -> Network:
 def closes_to_cars(attributes: dict[str, str]) -> bool:
     """Whether a part of a rerouter keeps cars out; SUMO sends everybody round one that names no classes."""
     names_none = not (attributes.get("allow") or attributes.get("disallow"))
-    return names_none or not open_to_cars(attributes)
+    return names_none or not open_to(attributes)
 
 
 def read_ground(

@@ -340,7 +340,7 @@ class NetworkReader:
         return Network(self.edges, crossings, opposite, roads, doubt, closed_free_s=self.closed_free_s)
 
     def _take_edge(self, edge: Attributes) -> None:
-        lanes = [lane for lane in self._lanes if open_to_cars(lane)]
+        lanes = [lane for lane in self._lanes if open_to(lane)]
         if edge.get("function") == "internal":
             for lane in lanes:
                 self.inner_lanes[lane["id"]] = Crossing(
@@ -433,18 +433,18 @@ def _built_up(zone: str) -> bool | None:
     return BUILT_UP.get(zone.rpartition(":")[2])
 
 
-def open_to_cars(lane: Attributes) -> bool:
-    """Whether cars may use what has these attributes, a lane's ``allow`` and ``disallow``."""
+def open_to(lane: Attributes, vehicle_class: str = CARS) -> bool:
+    """Whether this class of SUMO's may use what has these attributes, a lane's ``allow`` and ``disallow``."""
     allowed = lane.get("allow")
     if allowed is not None:
-        return allowed == "all" or CARS in allowed.split()
+        return allowed == "all" or vehicle_class in allowed.split()
     forbidden = lane.get("disallow", "").split()
-    return CARS not in forbidden and "all" not in forbidden
+    return vehicle_class not in forbidden and "all" not in forbidden
 
 
 def _for_buses(lane: Attributes) -> bool:
     """Whether buses may use it and cars may not; a footway that happens to allow buses does not count."""
-    return "bus" in lane.get("allow", "").split() and not open_to_cars(lane)
+    return "bus" in lane.get("allow", "").split() and not open_to(lane)
 
 
 def class_of(highway: str, tags: Mapping[str, str]) -> str:

@@ -9,6 +9,7 @@ import struct
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from itertools import pairwise
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import pyproj
@@ -17,7 +18,8 @@ import pytest
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import RoadShapes, SeenVehicle, Weather
 from automotive_cosim.errors import UserError
-from automotive_cosim.exchange.opendrive import pose_at, write_opendrive
+from automotive_cosim.exchange.incoming import road_network
+from automotive_cosim.exchange.opendrive import ACCESS, pose_at, write_opendrive
 from automotive_cosim.exchange.openscenario import write_openscenario
 from automotive_cosim.exchange.recording import RecordedAct, Recording, read_recording
 from automotive_cosim.exchange.ssam import DIMENSIONS, FORMAT, TIMESTEP, VEHICLE, write_trajectories
@@ -30,6 +32,7 @@ from automotive_cosim.run.trial import run_trial
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.traffic.network import drives_on_left
 from automotive_cosim.traffic.options import read_configuration
+from automotive_cosim.traffic.sumo_programs import run
 
 CLEAR = Weather(12.0, 60.0, 0.0, 1, 20.0, 20_000.0, 5.0)
 FOG = replace(CLEAR, weather_code=45, cloud_cover=100.0, visibility=80.0)
@@ -224,6 +227,29 @@ def test_curves_are_told_no_longer_than_they_are_and_signals_have_numbers(drawn)
     signals = [signal.attrib["id"] for signal in root.iter("signal")]
     assert sorted(map(int, signals)) == list(range(len(signals)))
     assert {control.attrib["signalId"] for control in root.iter("control")} <= set(signals)
+
+
+LANES = (
+    ({"allow": "bus taxi"}, {"bus", "taxi"}),
+    ({"disallow": "truck"}, set(ACCESS) - {"truck"}),
+    ({}, set(ACCESS)),
+)
+
+
+def test_a_road_that_is_read_back_has_lanes_for_the_same_vehicles(tmp_path, sumo):
+    rows = "".join(
+        f"<lane index='{at}' {' '.join(f'{name}={quoteattr(value)}' for name, value in attributes.items())}/>"
+        for at, (attributes, _) in enumerate(LANES)
+    )
+    (tmp_path / "a.nod.xml").write_text("<nodes><node id='a' x='0' y='0'/><node id='b' x='300' y='0'/></nodes>")
+    edge = f"<edge id='ab' from='a' to='b' numLanes='{len(LANES)}' speed='14'>{rows}</edge>"
+    (tmp_path / "a.edg.xml").write_text(f"<edges>{edge}</edges>")
+    ok, printed = run("netconvert", ("-n", "a.nod.xml", "-e", "a.edg.xml", "-o", "a.net.xml"), tmp_path)
+    assert ok, printed
+    write_opendrive(tmp_path / "a.net.xml", tmp_path / "a.xodr")
+    (again,) = road_network(tmp_path / "a.xodr", tmp_path).getEdges()
+    for lane, (_, classes) in zip(again.getLanes(), LANES, strict=True):
+        assert {each for each in ACCESS if lane.allows(each)} == classes
 
 
 def read_trajectories(path):

@@ -170,7 +170,7 @@ def test_a_search_counts_its_samples_and_no_rates_that_no_row_explains(tmp_path:
     search = replace(subject, findings=findings | {"rule": rule, "sampled_trials": sampled})
     made = dossier(search)
     assert shown(search).startswith(
-        "asurada failed in 1 of 5 runs in which something was due (2.00 h driven). 1 more run repeated"
+        "asurada failed in 1 of 5 runs in which something was due (2.00 h driven). Not counted: 1 run to repeat"
     )
     tables = {table.name: table for section in made.sections for table in section.tables}
     assert {row[1] for row in tables["events"].rows} == {"5"}

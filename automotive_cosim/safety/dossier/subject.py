@@ -238,14 +238,17 @@ def sentence(subject: Subject) -> str:
     if any(each["words"] == NOMINAL for each in (subject.findings or {}).get("failures", ())):
         told = f"{subject.agent} fails with {NOMINAL}. Beside that, {told}"
     if subject.again:
-        told += f" {counted(subject.again, 'more run')} repeated and reduced failures, and are in no total."
+        told += f" Not counted: {counted(subject.again, 'run')} to repeat and reduce failures."
     if subject.rule is not None and subject.drives:
         told += f" The space counts {subject.rule.words}."
     if beside := len(subject.failed_beside):
         told += f" Of the others, {beside} failed in what the space does not count."
     if subject.findings is not None:
+        minimal = subject.findings["failures"]
         told += (
-            f" The search reduced the failures to {counted(len(subject.findings['failures']), 'minimal failure')}"
+            f" The search reduced the failures to {counted(len(minimal), 'minimal failure')}"
+            if minimal
+            else " The search found no minimal failure"
         )
         if unreduced := len(subject.findings.get("not_reduced", ())):
             told += f" and left {unreduced} as found"

@@ -26,7 +26,7 @@ from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.specification import SCREEN, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UserError
 from automotive_cosim.run.batch import BatchKind
-from automotive_cosim.run.executor import Job, alone
+from automotive_cosim.run.executor import alone
 from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.scenarios import Scenario
@@ -34,7 +34,7 @@ from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.studies.calls import town
 from automotive_cosim.studies.calls.town import CarTrip
 from automotive_cosim.studies.content import StudyContent
-from automotive_cosim.studies.plan import check_edges, check_values, driven_at, opened
+from automotive_cosim.studies.plan import SeedJob, check_edges, check_values, driven_at, opened
 from automotive_cosim.studies.reroute.plan import named
 from automotive_cosim.studies.reroute.policies import AGENT, Policy, PolicyRule, parse_policy
 from automotive_cosim.studies.settings import AdoptionSettings
@@ -91,35 +91,12 @@ class AdoptionPlan(AdoptionSettings):
         )
 
     def jobs(self) -> tuple[AdoptionJob, ...]:
-        """One for every seed."""
-        return tuple(AdoptionJob(self, seed) for seed in self.seeds)
+        """One for every seed, with all shares."""
+        limit_s = 3_600.0 + 240 * self.minutes * len(self.shares)
+        return tuple(SeedJob(self, seed, AdoptionRow, limit_s) for seed in self.seeds)
 
 
-@dataclass(frozen=True, slots=True)
-class AdoptionJob(Job):
-    """All shares of one seed."""
-
-    plan: AdoptionPlan
-    seed: int
-
-    @property
-    def id(self) -> str:
-        """Its id, which can be a file name."""
-        return f"seed{self.seed}"
-
-    @property
-    def simulation(self) -> tuple[str, int]:
-        """The traffic that it warms up."""
-        return self.plan.scenario, self.seed
-
-    @property
-    def wall_s(self) -> float:
-        """Limit of its wall time."""
-        return 3_600.0 + 240 * self.plan.minutes * len(self.plan.shares)
-
-    def planned(self) -> AdoptionRow:
-        """Its row before it runs."""
-        return AdoptionRow(id=self.id, scenario=self.plan.scenario, seed=self.seed)
+AdoptionJob = SeedJob[AdoptionPlan, "AdoptionRow"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

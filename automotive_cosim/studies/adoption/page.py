@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.report.tables import Table
 from automotive_cosim.studies.adoption.adoption import AdoptionStudy, Cohort, ShareOutcome
-from automotive_cosim.studies.content import ShownStudy, write_shown
+from automotive_cosim.studies.content import ShownStudy
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.reroute.tables import NONE, told_mean
 from automotive_cosim.studies.reroute.warnings import missing_told
@@ -21,17 +20,6 @@ if TYPE_CHECKING:
 Of = Callable[[ShareOutcome], "float | None"]
 NOTICED_S = 0.5
 """A gain at the smallest share of less is none of which a part could be gone: our choice."""
-
-
-def write_adoption(folder: Path) -> Path:
-    """Writes the report into a study's folder; returns ``report.html``.
-
-    Raises:
-        UserError: the folder is not such a study's, or cannot be written.
-        SetupError: the extra ``reports`` is not installed.
-    """
-    study = AdoptionStudy.read(folder)
-    return write_shown(study, shown(study))
 
 
 def shown(study: AdoptionStudy) -> ShownStudy:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.cli.batches import ExecutorSettings, tell_notes
 from automotive_cosim.cli.derived import filled, takes
@@ -16,10 +16,6 @@ from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettin
 
 if TYPE_CHECKING:
     from automotive_cosim.run.batch import BatchKind
-    from automotive_cosim.studies.content import ShownStudy, StudyContent
-
-S = TypeVar("S", bound="StudyContent[Any, Any]")
-
 
 IN_PYTHON = ("redraw", "step_s")
 """What only a plan of one's own sets."""
@@ -37,9 +33,7 @@ def congestion(
     Rerun the command to resume a stopped study.
     """
     from automotive_cosim.studies.congestion.drive import CONGESTION
-    from automotive_cosim.studies.congestion.page import shown
     from automotive_cosim.studies.congestion.plan import CongestionPlan
-    from automotive_cosim.studies.congestion.results import CongestionStudy
 
     plan = filled(CongestionPlan, settings)
     tell_reading(plan.scenario)
@@ -47,7 +41,7 @@ def congestion(
     tell_notes([plan.opened])
     measures, over = counted(len(plan.measures), "measure"), counted(len(plan.seeds), "seed")
     about = f"{measures} and none, {over}, in steps of {plan.driven_step_s(plan.opened):g} s"
-    _run(plan, CONGESTION, CongestionStudy, shown, "seeds", out, settings, as_json=as_json, about=about)
+    _run(plan, CONGESTION, "seeds", out, settings, as_json=as_json, about=about)
 
 
 @takes(DaysSettings)
@@ -61,13 +55,12 @@ def days(
 
     Rerun the command to resume a stopped study.
     """
-    from automotive_cosim.studies.days.days import DAYS, DaysPlan, DaysStudy
-    from automotive_cosim.studies.days.page import shown
+    from automotive_cosim.studies.days.days import DAYS, DaysPlan
 
     plan = filled(DaysPlan, settings)
     tell_reading(plan.scenario)
     plan.check()
-    _run(plan, DAYS, DaysStudy, shown, "shares and seeds", out, settings, as_json=as_json)
+    _run(plan, DAYS, "shares and seeds", out, settings, as_json=as_json)
 
 
 @takes(AdoptionSettings, but=("emissions", *IN_PYTHON))
@@ -81,21 +74,18 @@ def adoption(
 
     Rerun the command to resume a stopped study.
     """
-    from automotive_cosim.studies.adoption.adoption import ADOPTION, AdoptionPlan, AdoptionStudy
-    from automotive_cosim.studies.adoption.page import shown
+    from automotive_cosim.studies.adoption.adoption import ADOPTION, AdoptionPlan
 
     plan = filled(AdoptionPlan, settings)
     tell_reading(plan.scenario)
     plan.check()
     tell_notes([plan.opened])
-    _run(plan, ADOPTION, AdoptionStudy, shown, "seeds", out, settings, as_json=as_json)
+    _run(plan, ADOPTION, "seeds", out, settings, as_json=as_json)
 
 
 def _run(
     plan: TrafficSettings,
     kind: BatchKind[Any, Any, Any],
-    study_of: type[S],
-    shown_of: Callable[[S], ShownStudy],
     units: str,
     out: Path | None,
     settings: Mapping[str, Any],
@@ -106,8 +96,6 @@ def _run(
     """Runs what is left of a study of a whole network, and prints its result, if anything of it ran.
 
     Args:
-        study_of: reads its folder.
-        shown_of: what its report shows; the first table is printed.
         units: what it runs, in words.
         out: its folder; None for the one of its plan.
         as_json: print an object alone.
@@ -117,7 +105,7 @@ def _run(
         InfrastructureError: parts of it ended in an error.
     """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.studies.content import write_shown
+    from automotive_cosim.studies.content import read_study, shown_of, write_shown
 
     folder = out or folder_of(plan)
     where = filled(ExecutorSettings, settings).opened()
@@ -126,7 +114,7 @@ def _run(
         console.print(f"{about}, into {folder}", soft_wrap=True)
     with where, driven(console, units, folder) as tell:
         kind.run(plan, folder, executor=where, tell=tell)
-    study = study_of.read(folder)
+    study = read_study(folder, plan.kind)
     if len(study.errors) < len(study.rows):
         shown = shown_of(study)
         page = write_shown(study, shown)

@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -18,10 +18,7 @@ if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.row import JobRow
-    from automotive_cosim.studies.content import StudyContent
     from automotive_cosim.studies.settings import TrafficSettings
-
-S = TypeVar("S", bound="StudyContent[Any, Any]")
 
 StudyFolder = Annotated[
     Path | None,

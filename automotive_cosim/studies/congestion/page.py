@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.incidents import Jam
@@ -21,24 +20,13 @@ from automotive_cosim.studies.congestion.results import (
 from automotive_cosim.studies.congestion.rows import FlowState
 from automotive_cosim.studies.congestion.tables import mean, tables
 from automotive_cosim.studies.congestion.words import name_of
-from automotive_cosim.studies.content import ShownStudy, write_shown
+from automotive_cosim.studies.content import ShownStudy
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
 from automotive_cosim.studies.reroute.tables import told
 from automotive_cosim.studies.reroute.warnings import missing_told, steps_told
 
 LEAST_DEPARTING = 0.1
 """Below this share of the mean rate, hardly anybody departs any more."""
-
-
-def write_congestion(folder: Path) -> Path:
-    """Writes the report of a study into its folder; returns ``report.html``.
-
-    Raises:
-        UserError: the folder is not a congestion study's, or cannot be written.
-        SetupError: the extra ``reports`` is not installed.
-    """
-    study = CongestionStudy.read(folder)
-    return write_shown(study, shown(study))
 
 
 def shown(study: CongestionStudy) -> ShownStudy:

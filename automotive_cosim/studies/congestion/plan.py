@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.incidents import AnyIncident, EgoIncident, RushHour
-from automotive_cosim.run.executor import Job
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.studies.calls.flow import Advice, SignalControl
 from automotive_cosim.studies.congestion.rows import CongestionRow
-from automotive_cosim.studies.plan import check_edges, check_values, driven_at, opened
+from automotive_cosim.studies.plan import SeedJob, check_edges, check_values, driven_at, opened
 from automotive_cosim.studies.settings import CongestionSettings
 
 INTERVAL_S, EPOCH_S = 60.0, 300.0
@@ -104,34 +103,12 @@ class CongestionPlan(CongestionSettings):
         return self.opened.ego.trips[0]
 
     def jobs(self) -> tuple[CongestionJob, ...]:
-        return tuple(CongestionJob(self, seed) for seed in self.seeds)
+        """One for every seed, with all measures; a city runs slower than real time."""
+        limit_s = 3_600.0 + 10 * self.duration_s * (1 + len(self.measures))
+        return tuple(SeedJob(self, seed, CongestionRow, limit_s) for seed in self.seeds)
 
 
-@dataclass(frozen=True, slots=True)
-class CongestionJob(Job):
-    """The traffic of one seed."""
-
-    plan: CongestionPlan
-    seed: int
-
-    @property
-    def id(self) -> str:
-        """Its id, which can be a file name."""
-        return f"seed{self.seed}"
-
-    @property
-    def simulation(self) -> tuple[str, int]:
-        """The warm traffic that its copies start from."""
-        return "the traffic and measuring it", self.seed
-
-    @property
-    def wall_s(self) -> float:
-        """Limit of its wall time: a city runs slower than real time."""
-        return 3_600.0 + 10 * self.plan.duration_s * (1 + len(self.plan.measures))
-
-    def planned(self) -> CongestionRow:
-        """Its row before it runs."""
-        return CongestionRow(id=self.id, scenario=self.plan.scenario, seed=self.seed)
+CongestionJob = SeedJob[CongestionPlan, CongestionRow]
 
 
 def measure_in(text: str, place: str) -> Measure:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from statistics import fmean
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.report.tables import Table, TableRow
-from automotive_cosim.studies.content import ShownStudy, write_shown
+from automotive_cosim.studies.content import ShownStudy
 from automotive_cosim.studies.days.days import (
     EQUILIBRIUM,
     NEAR,
@@ -34,17 +33,6 @@ LINES: dict[Drivers, str] = {EQUILIBRIUM: "--", OPTIMUM: ":"}
 
 LEAST_SHARE = 0.0005
 """Smaller differences are none in the answer, which has a tenth of a per cent."""
-
-
-def write_days(folder: Path) -> Path:
-    """Writes the report of a study from day to day into its folder; returns ``report.html``.
-
-    Raises:
-        UserError: the folder is not such a study's, or cannot be written.
-        SetupError: the extra ``reports`` is not installed.
-    """
-    study = DaysStudy.read(folder)
-    return write_shown(study, shown(study))
 
 
 def shown(study: DaysStudy) -> ShownStudy:
