@@ -62,15 +62,21 @@ def verify(
             show_default="a new one each time",
         ),
     ] = None,
+    key: Annotated[
+        Path | None,
+        typer.Option(help="File with the key of a hidden split, to print what was published before."),
+    ] = None,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
     """Check an evaluation or a bundle; exit code 1 if something does not match."""
     from automotive_cosim.publish.verify import verify as verified
+    from automotive_cosim.run.hidden import read_key
 
     seed = secrets.randbelow(2**31) if replay_seed is None else replay_seed
     workers = filled(ExecutorSettings, settings).processes
-    found = verified(path, replays=replay, seed=seed, workers=workers)
+    secret = None if key is None else read_key(key)
+    found = verified(path, replays=replay, seed=seed, key=secret, workers=workers)
     if as_json:
         problems = [asdict(problem) for problem in found.problems]
         print_json({"ok": not problems, "facts": found.facts, "problems": problems, "unknown": found.unknown})
