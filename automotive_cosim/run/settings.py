@@ -74,7 +74,7 @@ class RunSettings:
     """Which plan is evaluated, how and where to; however it is run, the same rows come out."""
 
     plan: Path | None = None
-    """TOML file with the plan; options override it."""
+    """TOML file with the plan, or `board` for the leaderboard's; options override it."""
     key: Path | None = None
     """File with the key that draws seeds and places of the hidden split; its hash, and that of the drawn trials,
     are told before anything runs."""

@@ -230,8 +230,6 @@ def place(tmp_path_factory):
     (folder / "tasks").mkdir()
     (folder / "tasks" / "own.py").write_text("TASKS = ()\n", encoding="utf-8")
     shutil.copytree(TOP / "docs/examples", folder / "docs/examples")
-    (folder / "docs/leaderboard").mkdir()
-    shutil.copyfile(TOP / "docs/leaderboard/plan.toml", folder / "docs/leaderboard/plan.toml")
     shutil.copytree(TOP / "docs/examples/my-agent", folder / "my-agent")
     (folder / "prompts").mkdir()
     (folder / "prompts/careful.md").write_text("Be careful.\n", encoding="utf-8")
