@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from contextlib import nullcontext
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -99,10 +100,17 @@ def verify(
 @app.command()
 @reads_results
 def regrade(
-    folder: Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)],
+    path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
     as_json: AsJson = False,
 ) -> None:
     """Judge the stored runs again by the current checks and print what changes; nothing is written."""
+    from automotive_cosim.publish.archive import unpacked
+
+    with nullcontext(path) if path.is_dir() else unpacked(path) as folder:
+        _regrade(folder, as_json)
+
+
+def _regrade(folder: Path, as_json: bool) -> None:
     from automotive_cosim.run.coverage import coverage
     from automotive_cosim.run.regrade import regrade as judged_again
     from automotive_cosim.run.rows import read_trials

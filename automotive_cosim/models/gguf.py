@@ -66,7 +66,7 @@ def read_model_file(path: Path) -> ModelFile:
                 raise UserError(
                     f"{path} is no GGUF file, by its first four bytes; give a file of llama.cpp's format"
                 )
-            version, _, count = struct.unpack("<IQQ", file.read(20))
+            version, _, count = struct.unpack("<IQQ", _read(file, 20))
             if version not in (2, 3) or count > MOST_KEYS:
                 raise UserError(f"{path} is GGUF version {version} with {count} keys; versions 2 and 3 are read")
             told = dict(_pair(file) for _ in range(count))
@@ -86,14 +86,20 @@ def read_model_file(path: Path) -> ModelFile:
 
 def _pair(file: IO[bytes]) -> tuple[str, Any]:
     name = _text(file)
-    return name, _value(file, *struct.unpack("<I", file.read(4)))
+    return name, _value(file, *struct.unpack("<I", _read(file, 4)))
+
+
+def _read(file: IO[bytes], size: int) -> bytes:
+    if len(data := file.read(size)) < size:
+        raise ValueError("it ends early")
+    return data
 
 
 def _text(file: IO[bytes]) -> str:
-    (length,) = struct.unpack("<Q", file.read(8))
+    (length,) = struct.unpack("<Q", _read(file, 8))
     if length > MOST_TEXT:
         raise ValueError(f"a text of {length} bytes")
-    return file.read(length).decode(errors="replace")
+    return _read(file, length).decode(errors="replace")
 
 
 def _value(file: IO[bytes], kind: int) -> Any:
@@ -102,8 +108,8 @@ def _value(file: IO[bytes], kind: int) -> Any:
         return _text(file)
     if kind != ARRAY:
         form = f"<{SCALARS[kind]}"
-        return struct.unpack(form, file.read(struct.calcsize(form)))[0]
-    of, count = struct.unpack("<IQ", file.read(12))
+        return struct.unpack(form, _read(file, struct.calcsize(form)))[0]
+    of, count = struct.unpack("<IQ", _read(file, 12))
     if count > MOST_ITEMS or of == ARRAY:
         raise ValueError(f"an array of {count} items")
     if of != TEXT:
