@@ -170,6 +170,7 @@ DRY = ("--dry-run",)
 NOT_RUN = None
 
 TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
+    (r"(doctor|eval) .*(FILE\.gguf|--key)", NOT_RUN, "needs a model or a key; tests/models and tests/run try such"),
     (r"eval .*failures/", NOT_RUN, "needs a search; tests/safety/test_trying.py has one"),
     (r"(search|measures)", NOT_RUN, "takes minutes; tests/safety and tests/measures try them"),
     (r"export", NOT_RUN, "needs a recorded drive; tests/exchange has one"),
