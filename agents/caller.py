@@ -121,6 +121,7 @@ class Caller:
         if seen.screenshot is not None and self._asking.chat_model.sees_pictures:
             pictures = (png(seen.screenshot), *road(seen))
         now = self._situation(seen, bool(pictures))
+        pictures = (*seen.sounds, *pictures)
         self._asking.note(StageName.PERCEIVE, seen, now)
         self._wish = replace(self._wish, text=self._wish.text if self._told else now, pictures=pictures)
         reply, asked = self._asking.converse(list(self._conversation(seen, now)))

@@ -173,7 +173,7 @@ class ModelAgent:
         action = schema_of(
             self._profile.actions, None if seen.elements is None else prompt_parts.indices(seen.elements)
         )
-        reply, asked = self._asking.ask(text, pictures, answer.schema(action))
+        reply, asked = self._asking.ask(text, (*seen.sounds, *pictures), answer.schema(action))
         try:
             understood = answer.read(reply.text, is_cut=reply.is_cut)
             if understood.action.action_type not in self._profile.actions:

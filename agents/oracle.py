@@ -170,14 +170,16 @@ class Oracle:
         return _click(index)
 
     def _search(self, observation: Observation, wanted: str) -> Action:
-        """Scrolls the lists on the screen to their ends, one after the other."""
+        """Scrolls the lists on the screen to their ends, one after the other, then to their beginnings."""
         if self._list and observation.feedback.code is not FeedbackCode.OK:
             self._lists_seen.add(self._list)
             self._list = ""
-        for index, element in enumerate(observation.elements or ()):
-            if element.is_scrollable and element.class_name == LIST and element.resource_id not in self._lists_seen:
-                self._list = element.resource_id
-                return Action(ActionType.SCROLL, direction=Direction.DOWN, index=index)
+        for way in (Direction.DOWN, Direction.UP):
+            for index, element in enumerate(observation.elements or ()):
+                seen = f"{element.resource_id} {way}" in self._lists_seen
+                if element.is_scrollable and element.class_name == LIST and not seen:
+                    self._list = f"{element.resource_id} {way}"
+                    return Action(ActionType.SCROLL, direction=way, index=index)
         raise ActionError(f"{wanted} is not on the screen, and no list that can be scrolled has it")
 
 

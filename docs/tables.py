@@ -30,6 +30,8 @@ from automotive_cosim.interface.policy import HOUSE
 from automotive_cosim.models.gguf import KNOWN
 from automotive_cosim.publish.leaderboard import board
 from automotive_cosim.safety.space import LIBRARY, read_space
+from automotive_cosim.voice import cabin
+from automotive_cosim.voice.table import LEVELS_DB, read, word_errors
 
 DOCS = Path(__file__).parent
 MARKED = re.compile(r"(<!-- (\w+), made by `python -m docs\.tables` -->\n\n).*?(\n\n<!-- end -->)", re.DOTALL)
@@ -154,6 +156,18 @@ def _fields(name: str) -> str:
     return "\n\n".join(parts)
 
 
+def _heard() -> str:
+    """Word errors of the shipped table by the ratio of words to noise."""
+    rows = []
+    for at, level in enumerate(LEVELS_DB):
+        counted = [word_errors(said, row[at]) for said, row in read().items()]
+        wrong, words = (sum(each[part] for each in counted) for part in (0, 1))
+        whole = sum(each[0] == 0 for each in counted)
+        ratio = "without noise" if level is None else f"{level:g} dB"
+        rows.append((ratio, f"{wrong / words:.0%}", f"{whole / len(counted):.0%}"))
+    return _table(("words above noise", "word errors", "without any error"), rows)
+
+
 def _openscenario() -> str:
     """Each element of OpenSCENARIO XML with what the import makes of its attributes and parts."""
     rows: list[tuple[str, ...]] = []
@@ -168,9 +182,11 @@ def _openscenario() -> str:
 
 MADE: Mapping[str, Callable[[], str]] = {
     "conditions": _conditions,
+    "cabin": lambda: (cabin.__doc__ or "").partition("\n\n")[2],
     "families": _families,
     "framework": lambda: f"```python\n{FRAMEWORK.read_text(encoding='utf-8').strip()}\n```",
     "functions": lambda: f"```text\n{printed('show', 'functions')}\n```",
+    "heard": _heard,
     "kinds": _kinds,
     "known_files": lambda: _table(
         ("model", "maker", "SHA-256 of the file"),

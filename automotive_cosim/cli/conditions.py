@@ -12,9 +12,14 @@ from annotated_types import Ge, Le
 
 from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.derived import ShownDefault, number_in, unless_shown, with_options
-from automotive_cosim.episode.conditions import TABLE, Condition
+from automotive_cosim.episode.conditions import TABLE, Condition, condition
 from automotive_cosim.episode.own_prompt import resolved
 
+FROM_FILES: Mapping[str, Callable[[str], Any]] = {
+    "prompt": resolved,
+    "make": partial(Condition.value, condition("make")),
+}
+"""What becomes of the name of a file, by condition."""
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -47,13 +52,13 @@ def _told(settings: Mapping[str, Any]) -> list[tuple[Condition, str]]:
 
 
 def _value(each: Condition, word: str) -> Any:
-    if each.name == "prompt":
-        return resolved(word)
+    if each.name in FROM_FILES:
+        return FROM_FILES[each.name](word)
     return word if each.choices else number_in(float, [Ge(each.bounds[0]), Le(each.bounds[1])], word)
 
 
 def _parameter(each: Condition, *, lists: bool) -> inspect.Parameter:
-    named = [*each.choices, *(["FILE"] if each.name == "prompt" else [])]
+    named = [*each.choices, *(["FILE"] if each.name in FROM_FILES else [])]
     choices = f" {'Separated by commas' if lists else 'One of'}: {', '.join(named)}." if named else ""
     option = typer.Option(
         f"--{each.word}",

@@ -64,6 +64,7 @@ EXTRAS = {
     "rl": Extra("stable_baselines3", "training in Flat-v0 and FlatDrive-v0"),
     "doors": Extra("mcp", "mcp, a2a and --agent a2a:http://HOST:PORT"),
     "harnesses": Extra("inspect_ai", "Inspect and verifiers"),
+    "voice": Extra("faster_whisper", "--hear cabin with words that nobody has said yet"),
     "cluster": Extra("ray", "eval and study on many machines"),
 }
 

@@ -46,7 +46,7 @@ def run_drive(
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.trial import Limits, run_trial
 
-    under = Conditions.named(given(settings))
+    under = Conditions.named(given(settings)).at(seed)
     limits = Limits().of_drives.within(limited.tokens, limited.seconds)
     told = instructions(under.prompt)
     budget = AgentSettings(
@@ -140,6 +140,9 @@ def _tell(console: Console, row: DriveTrialRow, timeline: Json) -> None:
             f"Near-collision time with the vehicle ahead {near_s:.0f} s; without the agent {baseline_s:.0f} s",
             soft_wrap=True,
         )
+        lost_s, without_s = row.harm.unaware_s, row.baseline_harm.unaware_s
+        if lost_s:
+            console.print(f"Driver's attention lost {lost_s:.0f} s; without the agent {without_s:.0f} s")
     if row.unwatched_from_s is not None:
         console.print(
             f"Nobody watched from {clock(row.unwatched_from_s)} on: {row.agent_error or row.end}", soft_wrap=True

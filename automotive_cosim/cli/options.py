@@ -55,7 +55,7 @@ TASKS_HELP = (
 )
 TaskNames = Annotated[str, typer.Option("--tasks", help=TASKS_HELP)]
 SUITE_HELP = (
-    "Task suite: standard, hard, limits, clarify, speed or all. An id selects a task in any suite, and core sixty."
+    "Task suite: standard, hard, limits, clarify, speed, voice or all. An id selects a task in any, and core sixty."
 )
 SuiteName = Annotated[str, typer.Option("--suite", help=SUITE_HELP)]
 """For every command that chooses tasks by words."""

@@ -116,7 +116,7 @@ def run(
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
     limits = Limits().within(limited.tokens, limited.seconds)
     off = parts(how.without)
-    under = Conditions.named(given(settings))
+    under = Conditions.named(given(settings)).at(seed)
 
     def player_under(each: Conditions) -> Agent:
         settings = AgentSettings(

@@ -22,6 +22,7 @@ def screens(
     out: Annotated[Path, typer.Option(help="Picture to write: .webp, .png or .jpg.")] = Path("runs/screens.webp"),
     language: Annotated[str, typer.Option(help="Language of the screens: en, fr, de or ja.")] = "en",
     screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
+    make: Annotated[str, typer.Option(help="Whose cockpit: a make, or the file of one's own (.toml).")] = "home",
 ) -> None:
     """Draw every screen by day and by night, as it is at the start of a drive."""
     from automotive_cosim.cockpit.signals import HMI
@@ -37,10 +38,9 @@ def screens(
         raise UserError(
             f"{out} is not a picture format that can be written; give --out a name ending in .webp, .png or .jpg"
         )
+    under = Conditions.named({"screen": screen, "make": make})
     with closing(Simulations()) as simulations:
-        finder = SituationFinder(
-            EpisodeSpec(scenario="paris_centre", conditions=Conditions.named({"screen": screen})), simulations
-        )
+        finder = SituationFinder(EpisodeSpec(scenario="paris_centre", conditions=under), simulations)
         with closing(finder.find(SeedSource(0).next()).world) as world:
             cockpit = world.cockpit
     cockpit.inject(HMI.LANGUAGE.path, language)

@@ -34,6 +34,8 @@ class AppPage(NamedTuple):
     made: Callable[[State], tuple[Widget, ...]]
     room: Room = Room.TWO
     """What it needs."""
+    sided: bool = False
+    """Whether what is on its left is on the left of the car, so that no make mirrors it."""
 
 
 def nothing(state: State, rng: np.random.Generator) -> Iterable[AppData]:

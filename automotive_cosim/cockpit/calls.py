@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.equipment import equipped
 from automotive_cosim.cockpit.functions import CarFunction, as_told, groups, named, of_signals, reading, unknown
 from automotive_cosim.cockpit.language import translated
+from automotive_cosim.cockpit.make import HOME
 from automotive_cosim.cockpit.messages import Pick, Show
 from automotive_cosim.cockpit.registry import apps, pages
 from automotive_cosim.cockpit.signals import CATALOGUE, HMI, MOTION
@@ -56,6 +57,7 @@ def read_screen(
     if refusal := _not_installed(state, app):
         return refusal
     twin = state.copy()
+    twin.make = HOME  # functions are the same in every make
     Show(screen).perform(twin)
     if item:
         ways = _ways(twin, screen)
@@ -93,7 +95,7 @@ def _lines(state: State) -> Iterator[str]:
         made = equipped(state, page.made(state))
         whole = Screen(
             rect=state.size.whole,
-            dock=state.size.dock,
+            dock=state.frame.dock,
             night=False,
             children=tuple(translated(widget, language) for widget in made),
         )

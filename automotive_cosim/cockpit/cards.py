@@ -11,13 +11,14 @@ from typing import TypeVar
 
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.controls import CHOICES, CONTROLS, shown
-from automotive_cosim.cockpit.flow import Block, at, card, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.flow import Block, BlockPart, at, card, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, Focus, Show
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import HMI, Signal, Signals
+from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, Message, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.timer import Timer
@@ -47,7 +48,8 @@ SMALL = 20, 16
 
 def content(state: State) -> Rect:
     """The area of the present screen."""
-    return state.size.content(pages()[state.screen].room)
+    own = state.screen in state.make.screens
+    return state.frame.content(Room.TWO if own else pages()[state.screen].room)
 
 
 # --- texts ------------------------------------------------------------------------------------------------
@@ -309,7 +311,7 @@ def rows(
     name: str,
     state: State,
     entries: Sequence[T],
-    entry: Callable[[int, T], Widget],
+    entry: Callable[[int, T], BlockPart],
     *,
     columns: int = 1,
     height: int = 64,
@@ -327,7 +329,7 @@ def rows(
 
     def made(rect: Rect) -> Rows:
         if state.is_typing:  # above the keyboard, but for a row at least
-            rect = rect.top(min(rect.height, max(height, state.size.keyboard.y - gap - rect.y)))
+            rect = rect.top(min(rect.height, max(height, state.frame.keyboard.y - gap - rect.y)))
         limit = state.entries_limit
         total = len(entries) if limit is None or len(entries) <= limit else limit + 1
         lines = -(-total // columns)

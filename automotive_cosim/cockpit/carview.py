@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
-from automotive_cosim.cockpit.theme import DAY, NIGHT, Colour
+from automotive_cosim.cockpit.theme import Colour, Palette
 
 _FINE = 3
 Lamps = tuple[bool, bool, bool, bool, bool, bool]
@@ -28,7 +28,9 @@ AMBER: Colour = (255, 156, 24)
 
 
 @lru_cache(maxsize=16)
-def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int, night: bool) -> Image.Image:
+def car(
+    width: int, height: int, lamps: Lamps, windshield: int, rear_window: int, palette: Palette, *, night: bool
+) -> Image.Image:
     """The picture of that size in pixels.
 
     Args:
@@ -36,11 +38,12 @@ def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int
         height: pixels.
         windshield: its opacity in tenths.
         rear_window: its opacity in tenths.
-        night: whether to use the night palette.
+        palette: the colours of what is around it.
+        night: whether it is dark.
     """
     unit = width / 300
     x, y = width / 2, height / 2 + SHIFT_DOWN * unit
-    light = _light(width, height, lamps, night)
+    light = _light(width, height, lamps, palette)
     fine = light.resize((width * _FINE, height * _FINE), Image.Resampling.NEAREST)
 
     def place(points: Outline) -> Outline:
@@ -49,14 +52,14 @@ def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int
     _body(ImageDraw.Draw(fine), place, round(unit * _FINE), (windshield, rear_window), night)
     _lamps(ImageDraw.Draw(fine), place, lamps, night)
     ahead = place([(-16, -HALF_LENGTH - 14), (0, -HALF_LENGTH - 28), (16, -HALF_LENGTH - 14)])
-    ImageDraw.Draw(fine).line(ahead, (NIGHT if night else DAY).muted, round(5 * unit * _FINE), joint="curve")
+    ImageDraw.Draw(fine).line(ahead, palette.muted, round(5 * unit * _FINE), joint="curve")
     return fine.reduce(_FINE)
 
 
 @lru_cache(maxsize=16)
-def _light(width: int, height: int, lamps: Lamps, night: bool) -> Image.Image:
+def _light(width: int, height: int, lamps: Lamps, palette: Palette) -> Image.Image:
     """The light of the lamps on the road, fading with distance."""
-    picture = Image.new("RGB", (width, height), (NIGHT if night else DAY).surface)
+    picture = Image.new("RGB", (width, height), palette.surface)
     unit = width / 300
     x, y = width / 2, height / 2 + SHIFT_DOWN * unit
     position, low, high, front_fog, rear_fog, hazard = lamps

@@ -36,6 +36,7 @@ from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.changes import CarChange, schedule
 from automotive_cosim.cockpit.commands import AskDriver, Set
 from automotive_cosim.cockpit.drawing import pixels_of
+from automotive_cosim.cockpit.make import HOME, Make
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Back, Key, Show, write
 from automotive_cosim.cockpit.missing_parts import Lacking
@@ -68,6 +69,7 @@ from automotive_cosim.cockpit.signals import (
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import CommandRecord, Message, State
 from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.cockpit.tree import opens
 from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.cockpit.widgets import Button, Field, MapView, Rows, Screen, Slider, Widget
 from automotive_cosim.contracts import (
@@ -251,6 +253,7 @@ class Cockpit:
         driven_s: float = 0.0,
         places_on: frozenset[str] | None = None,
         size: ScreenSize = ScreenSize.STANDARD,
+        make: Make = HOME,
         width: int | None = None,
     ) -> None:
         """A cockpit before its first ``sense``.
@@ -270,6 +273,7 @@ class Cockpit:
             lookout: whether home and map show what the car notices around, ahead and aboard.
             driven_s: how long the driver had been driving without a break before departure.
             places_on: edges on which places may lie; None means any.
+            make: whose cockpit it is.
             width: width of the screenshot in pixels, by default that of the size; the height follows.
 
         Raises:
@@ -293,6 +297,7 @@ class Cockpit:
             for key, part in picked.items()
         }
         state.size = size
+        state.make = make
         self._display = Display(1.0 if width is None else width / size.width)
         take_seats(self.signals, aboard)
         for path, value in (signals or {}).items():
@@ -310,11 +315,13 @@ class Cockpit:
         twin._display = copy(self._display)
         return twin
 
-    def fit(self, size: ScreenSize) -> None:
-        """Takes a display of this size in place of its own, unless that is of this size."""
+    def fit(self, size: ScreenSize, make: Make | None = None) -> None:
+        """Takes a display of this size, and of a make if one is given, unless it has that already."""
         if size is not self._state.size:
             self._state.size, self._tree = size, None
             self._display = Display(1.0)
+        if make is not None and make is not self._state.make:
+            self._state.make, self._tree = make, None
 
     # --- the world ----------------------------------------------------------------------------------------
 
@@ -513,7 +520,14 @@ class Cockpit:
         return self._perform(Back())
 
     def open_app(self, name: str) -> Feedback:
-        wanted = " ".join(name.casefold().split())
+        wanted, make = " ".join(name.casefold().split()), self._state.make
+        if make is not HOME:
+            known = opens(make)
+            if wanted in known:
+                return self._perform(Show(known[wanted]))
+            missing, offered = repr(name[:40]), ", ".join(dict.fromkeys(known.values()))
+            words = say("no app is named {name}; choose from {apps}", name=missing, apps=offered)
+            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, words)
         if wanted not in by_any_name():
             page_of = docked().get(wanted)
             if page_of is not None:
@@ -540,8 +554,9 @@ class Cockpit:
         Raises:
             UnknownNameError: no such screen.
         """
-        if screen not in pages():
-            raise UnknownNameError("screen", screen, pages())
+        known = {*pages(), *self._state.make.screens}
+        if screen not in known:
+            raise UnknownNameError("screen", screen, known)
         return self._perform(Show(screen))
 
     # --- safety calls, the same as the safety centre's buttons ----------------------------------------------
@@ -648,7 +663,7 @@ class Cockpit:
 
     def spoken(self, feedback: Feedback) -> Feedback:
         """An answer in the language of the screens."""
-        return language.answered(feedback, self.signals[HMI.LANGUAGE])
+        return language.answered(feedback, self.signals[HMI.LANGUAGE], self._state.make)
 
     def commands(self) -> dict[str, Any]:
         """Everything that can be commanded: actuators by path, app data, and what was sent."""

@@ -16,7 +16,18 @@ import numpy.typing as npt
 from PIL import Image, ImageDraw
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.theme import CAP_HEIGHT, EAST_ASIAN_FROM, SMALLER, Colour, Icon, Type, Weight, face
+from automotive_cosim.cockpit.theme import (
+    CAP_HEIGHT,
+    EAST_ASIAN_FROM,
+    HOME_STYLE,
+    SMALLER,
+    Colour,
+    Icon,
+    Style,
+    Type,
+    Weight,
+    face,
+)
 
 _NOT_FIRST = "、。：？！」』）％ーぁぃぅぇぉっゃゅょァィゥェォッャュョ"
 """Characters that must not begin a line in Japanese."""
@@ -43,17 +54,28 @@ class Ink:
 class Canvas:
     """Draws the widgets of one frame."""
 
-    def __init__(self, image: Image.Image, scale: float) -> None:
+    def __init__(self, image: Image.Image, scale: float, style: Style = HOME_STYLE, *, night: bool = False) -> None:
         """Draws on an image; ``scale`` is pixels per logical pixel."""
         self.image = image
+        self.style = style
+        self.night = night
         self.scale = scale
         self.inks: list[Ink] = []
         self._draw = ImageDraw.Draw(self.image)
 
     @classmethod
-    def plain(cls, width: int, height: int, scale: float, colour: Colour) -> Canvas:
+    def plain(
+        cls,
+        width: int,
+        height: int,
+        scale: float,
+        colour: Colour,
+        style: Style = HOME_STYLE,
+        *,
+        night: bool = False,
+    ) -> Canvas:
         """A canvas of that size in pixels, filled with one colour."""
-        return cls(Image.new("RGB", (width, height), colour), scale)
+        return cls(Image.new("RGB", (width, height), colour), scale, style, night=night)
 
     def pixels(self) -> npt.NDArray[np.uint8]:
         """The frame so far, (height, width, 3); read-only."""
@@ -114,7 +136,7 @@ class Canvas:
         """An icon around a point."""
         x, y = centre
         pixels = round(size * self.scale)
-        mask, left, top, _ = _mask(str(icon), Weight.ICON, pixels)
+        mask, left, top, _ = _mask(str(self.style.icons.get(icon, icon)), Weight.ICON, pixels)
         base = round(y * self.scale - pixels / 2 + pixels * 0.875)
         self.image.paste(colour, (round(x * self.scale - pixels / 2) + left, base + top), mask)
 

@@ -21,7 +21,7 @@ from automotive_cosim.cockpit.widgets import Button, Card, Label, Slider, Tile, 
 
 HEIGHTS = {Tile: 60, Slider: 84, Button: 72}
 """Natural heights in logical pixels; a label in ``Type.LABEL`` is as high as ``LINE``, others take what is left."""
-LINE = 28
+LINE, NARROWER = 28, 0.9
 PADDING = 28, 24
 """Between the edge of a large card and what is in it."""
 
@@ -93,9 +93,16 @@ def stack(*items: BlockItem) -> Block:
 
 
 def line(*items: BlockItem) -> Block:
-    """Side by side; as high as the highest."""
+    """Side by side; as high as the highest. In a box that is too narrow, sizes are up to a tenth less."""
     parts, sizes = _sized(items, upright=False)
-    return Block(parts, lambda rect: row(rect, *sizes), _highest(parts))
+    fixed = sum(size or 0 for size in sizes)
+
+    def divide(rect: Rect) -> tuple[Rect, ...]:
+        if rect.width < fixed <= rect.width / NARROWER:
+            return row(rect, *(size and int(size * rect.width / fixed) for size in sizes))
+        return row(rect, *sizes)
+
+    return Block(parts, divide, _highest(parts))
 
 
 def panels(*items: BlockItem) -> Block:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache, lru_cache
 from typing import Any
 
-from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.notifications import wanting
 from automotive_cosim.cockpit.apps.phone.commands import DECLINE_CALL, TAKE_CALL
 from automotive_cosim.cockpit.apps.phone.state import Phone
@@ -18,14 +18,15 @@ from automotive_cosim.cockpit.flow import Block, BlockPart, fill, grid, line
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
+from automotive_cosim.cockpit.make import Make
 from automotive_cosim.cockpit.messages import Back, Dismiss, Show
 from automotive_cosim.cockpit.notices import lit, lit_in_words
-from automotive_cosim.cockpit.registry import apps_in, docked
 from automotive_cosim.cockpit.signals import ADAS, CALL, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
-from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.cockpit.size import Frame, ScreenSize
 from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.telltales import Telltale
 from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
+from automotive_cosim.cockpit.tree import entries, named, root, short
 from automotive_cosim.cockpit.values import sign_figure, sign_in_words, speed, speed_unit, temperature
 from automotive_cosim.cockpit.widgets import (
     Button,
@@ -51,6 +52,8 @@ DOCKED: tuple[Signal[Any], ...] = (
     HMI.LANGUAGE,
 )
 """Everything that the dock depends on, besides the present screen."""
+SIDE_INSET = 8
+"""Between the edges of a dock at a side and its entries."""
 NOTICE_WIDTH = 640
 """At most; notices in a wider bar leave the rest free."""
 LAMP, FEW, MANY = 31, 5, len(Telltale) - 1
@@ -62,13 +65,14 @@ _SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGN
 
 
 @cache
-def _bar(size: ScreenSize) -> tuple[Rect, ...]:
+def _bar(frame: Frame) -> tuple[Rect, ...]:
     """The boxes of the status bar in the order of ``status_bar``, then those of the callouts and of the limit sign.
 
     From the left what time brings, from the right what the drive does; between them, or in a second line, what
     comes and goes.
     """
-    lines = size.status.rows(size.bars, 0)
+    size = frame.size
+    lines = frame.status.rows(size.bars, 0)
     left, between, right = row(lines[0], BEFORE, REST, AFTER)
     room = lines[1].inset(MARGIN, 0) if size.bars > 1 else between
     many = FEW if size is ScreenSize.STANDARD else MANY
@@ -88,7 +92,7 @@ def _bar(size: ScreenSize) -> tuple[Rect, ...]:
         charge,
         gear.middle(36, 36),
         pace,
-        unit.moved(0, 6),
+        unit.moved(0, 6).within(size.whole),
         notice.left(min(notice.width, NOTICE_WIDTH)).inset(0, 6),
         sign.middle(50, 50),
     )
@@ -147,7 +151,7 @@ def status_bar(state: State) -> tuple[Widget, ...]:
         pace,
         about("status.speed_unit", unit, 1),
     )
-    return fill(state.size.status, Block(parts, lambda _: _bar(state.size)))
+    return fill(state.frame.status, Block(parts, lambda _: _bar(state.frame)))
 
 
 def _network(state: State) -> Glyph:
@@ -173,7 +177,7 @@ def _network(state: State) -> Glyph:
 
 def callouts(state: State) -> tuple[Widget, ...]:
     """What comes and goes in the status bar: a caller, a notice or a call, and the limit sign of the camera."""
-    *_, room, sign = _bar(state.size)
+    *_, room, sign = _bar(state.frame)
     return *fill(room, _callout(state)), *fill(sign, _limit_sign(state))
 
 
@@ -243,37 +247,30 @@ def dock(state: State) -> tuple[Widget, ...]:
 
     It seldom changes, and is the same object as long as it does not. The driver's side is that of the traffic.
     """
-    here = docked()[state.screen]
+    here = root(state.make, state.screen)
     values = tuple(state.signals[signal] for signal in DOCKED)
-    return _dock(state.size, here, values, state.roads.network.left_hand)
+    return _dock(state.make, state.size, here, values, state.roads.network.left_hand)
 
 
 @lru_cache(maxsize=256)
-def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
-    signals = Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)})
-    first, *second = size.dock.rows(size.bars, 0)
+def _dock(make: Make, size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
+    signals, frame = (
+        Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)}),
+        make.frame(size),
+    )
+    if not make.has_quick:
+        across = frame.dock.inset(SIDE_INSET, 8) if frame.upright else frame.dock.inset(MARGIN, 8)
+        offered = entries(make)
+        cells = across.rows(len(offered), 4) if frame.upright else across.columns(len(offered), 4)
+        return _translated(_entries(make, here, cells), signals, make)
+    first, *second = frame.dock.rows(size.bars, 0)
     wide, large = (240, 96) if second else (184, 58)
     _, left, _, front, _, middle, _, rear, _, right, _ = row(
         second[0] if second else first, MARGIN, wide, 10, large, 8, REST, 8, large, 10, wide, MARGIN
     )
     if second:
         middle = first.inset(MARGIN, 0)
-    offered = apps_in(Where.DOCK)
-    cells = middle.inset(0, 8).columns(len(offered), 4)
-    apps = tuple(
-        Choice(
-            rect=cell,
-            key=f"dock.{app.name}",
-            text=app.short or app.title,
-            icon=app.icon,
-            selected=app.name == here,
-            on_tap=Show(app.name),
-            look="quiet",
-            stacked=True,
-            style=Type.SMALL,
-        )
-        for cell, app in zip(cells, offered, strict=True)
-    )
+    apps = _entries(make, here, middle.inset(0, 8).columns(len(entries(make)), 4))
     left, front, rear, right = (each.inset(0, 22) for each in (left, front, rear, right))
 
     def warmth(signal: Signal[float], who: str) -> Block:
@@ -296,4 +293,25 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
         *fill(rear, quick(HVAC.REAR_DEFROSTER, "rear", say("Rear defroster"))),
         *fill(left if left_hand else right, warmth(HVAC.PASSENGER_TEMPERATURE, "passenger")),
     )
-    return tuple(translated(widget, signals[HMI.LANGUAGE]) for widget in whole)
+    return _translated(whole, signals, make)
+
+
+def _entries(make: Make, here: str, cells: Iterable[Rect]) -> tuple[Widget, ...]:
+    return tuple(
+        Choice(
+            rect=cell,
+            key=f"dock.{name}",
+            text=short(make, name),
+            icon=named(make, name)[1],
+            selected=name == here,
+            on_tap=Show(name),
+            look="quiet",
+            stacked=True,
+            style=Type.SMALL,
+        )
+        for cell, name in zip(cells, entries(make), strict=True)
+    )
+
+
+def _translated(widgets: Iterable[Widget], signals: Signals, make: Make) -> tuple[Widget, ...]:
+    return tuple(translated(widget, signals[HMI.LANGUAGE], make) for widget in widgets)

@@ -37,14 +37,14 @@ def keyboard(field: Field, state: State) -> Card:
     language = state.signals[HMI.LANGUAGE]
     letters = list(LETTERS.get(language, LETTERS["en"]))
     letters[-1] += ACCENTS.get(language, "'-")
-    lines = state.size.keyboard.inset(MARGIN, 8).rows(5, GAP)
+    lines = state.frame.keyboard.inset(MARGIN, 8).rows(5, GAP)
     keys = [
         Button(rect=cell, key=f"keyboard.{letter}", text=letter, style=Type.BODY, on_tap=Key(field.key, letter))
         for box, row in zip(lines, (DIGITS, *letters), strict=False)
         for cell, letter in zip(_centred(box, len(row)), row, strict=True)
     ]
-    card = Card(rect=state.size.keyboard, children=(*keys, *fill(lines[-1], _lowest(field))))
-    return translated(card, language)
+    card = Card(rect=state.frame.keyboard, children=(*keys, *fill(lines[-1], _lowest(field))))
+    return translated(card, language, state.make)
 
 
 def uncovered(widgets: Iterable[Widget], keyboard: Rect) -> Iterator[Widget]:

@@ -10,15 +10,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
-from gettext import GNUTranslations
+from gettext import GNUTranslations, NullTranslations
 from importlib.resources import files
 from io import BytesIO
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from automotive_cosim.cockpit.make import HOME, Make
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.given import Language as Language
 from automotive_cosim.contracts.text import Quantity, Text
+
+if TYPE_CHECKING:
+    from babel.messages.catalog import Catalog
 
 W = TypeVar("W", bound=Widget)
 
@@ -36,30 +40,40 @@ _OWN: Mapping[type[Widget], tuple[str, ...]] = {
 def catalogue(language: str) -> GNUTranslations:
     """The catalogue of a language other than English."""
     from babel.messages.mofile import write_mo  # takes a while to import, and English does without
-    from babel.messages.pofile import read_po
 
-    file = files("automotive_cosim.cockpit").joinpath("languages", f"{language}.po")
     compiled = BytesIO()
-    with file.open("rb") as texts:
-        write_mo(compiled, read_po(texts))
+    write_mo(compiled, _entries(language))
     compiled.seek(0)
     return GNUTranslations(compiled)
 
 
-def said(text: str, language: str) -> str:
-    """A text or figure in that language. A plain ``str`` stays as it is."""
-    if language == Language.ENGLISH:
+def messages() -> frozenset[str]:
+    """All that the screens say, in English."""
+    ids = [entry.id for entry in _entries(Language.FRENCH)]
+    return frozenset(each if isinstance(each, str) else each[0] for each in ids)
+
+
+def _entries(language: str) -> Catalog:
+    from babel.messages.pofile import read_po
+
+    with files("automotive_cosim.cockpit").joinpath("languages", f"{language}.po").open("rb") as texts:
+        return read_po(texts)
+
+
+def said(text: str, language: str, make: Make = HOME) -> str:
+    """A text or figure in that language and the make's words. A plain ``str`` stays as it is."""
+    if language == Language.ENGLISH and (make is HOME or not isinstance(text, Text)):
         return str(text)
     if isinstance(text, Quantity):
         return text.replace(".", _decimal_sign(language))
-    return _translated(text, language) if isinstance(text, Text) else text
+    return _translated(text, language, make) if isinstance(text, Text) else text
 
 
-def word(message: str, language: str) -> str:
+def word(message: str, language: str, make: Make = HOME) -> str:
     """What the screens say for a message without fields; unchanged if they do not say it."""
-    if not message or language == Language.ENGLISH:  # the empty message is a catalogue's header
-        return message
-    return catalogue(language).gettext(message)
+    if not message or message in make.told[language]:  # the empty message is a catalogue's header
+        return make.said(message, language)
+    return message if language == Language.ENGLISH else catalogue(language).gettext(message)
 
 
 @lru_cache
@@ -69,9 +83,12 @@ def _decimal_sign(language: str) -> str:
     return get_decimal_symbol(language)
 
 
-def _translated(text: Text, language: str) -> str:
-    known = catalogue(language)
-    if text.plural:
+def _translated(text: Text, language: str, make: Make) -> str:
+    known = NullTranslations() if language == Language.ENGLISH else catalogue(language)
+    own = make.told[language].get(text.message)
+    if own is not None and not text.plural:
+        form = own
+    elif text.plural:
         form = known.ngettext(text.message, text.plural, text.number)
     elif text.context:
         form = known.pgettext(text.context, text.message)
@@ -80,25 +97,26 @@ def _translated(text: Text, language: str) -> str:
     if not text.fields:
         return form
     fields = {
-        name: said(value, language) if isinstance(value, str) else value for name, value in text.fields.items()
+        name: said(value, language, make) if isinstance(value, str) else value
+        for name, value in text.fields.items()
     }
     return form.format(**fields)
 
 
-def answered(feedback: Feedback, language: str) -> Feedback:
+def answered(feedback: Feedback, language: str, make: Make = HOME) -> Feedback:
     """The feedback to an action in that language."""
-    return replace(feedback, text=said(feedback.text, language))
+    return replace(feedback, text=said(feedback.text, language, make))
 
 
-def translated(widget: W, language: str) -> W:
-    """The widget and its children in that language. Typed text stays."""
-    if language == Language.ENGLISH:
+def translated(widget: W, language: str, make: Make = HOME) -> W:
+    """The widget and its children in that language and the make's words. Typed text stays."""
+    if language == Language.ENGLISH and make is HOME:
         return widget
     changes: dict[str, Any] = {}
     for name in (*_COMMON, *_OWN.get(type(widget), ())):
         text: str = getattr(widget, name)
         if isinstance(text, Text | Quantity):
-            changes[name] = said(text, language)
+            changes[name] = said(text, language, make)
     if widget.children:
-        changes["children"] = tuple(translated(child, language) for child in widget.children)
+        changes["children"] = tuple(translated(child, language, make) for child in widget.children)
     return replace(widget, **changes) if changes else widget

@@ -21,6 +21,8 @@ REST: Final = None
 """A part that takes what the others leave."""
 
 LayoutPart = int | None
+FULL = 1232
+"""Width of a screen for which the sizes of its parts are given."""
 
 
 @lru_cache(maxsize=2048)
@@ -44,14 +46,16 @@ def row(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
 
 
 def panes(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
-    """The parts of a screen, a gap apart: side by side, or in a box taller than wide one above the other, as high
-    as each other.
+    """The parts of a screen, a gap apart: side by side, in a narrow box narrower, or in a box taller than wide one
+    above the other, as high as each other.
 
     Raises:
         ValueError: they are wider than the box.
     """
     if rect.height > rect.width:
         return rect.rows(len(parts), GAP)
+    if rect.width < FULL:
+        parts = tuple(part and part * rect.width // FULL for part in parts)
     spaced = [part for each in parts for part in (GAP, each)][1:]
     return row(rect, *spaced)[::2]
 

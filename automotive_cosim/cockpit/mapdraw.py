@@ -16,7 +16,7 @@ from PIL import Image, ImageDraw
 
 from automotive_cosim.cockpit.groundmap import GroundMap
 from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, Camera, RoadMap, Stroke, View
-from automotive_cosim.cockpit.theme import DAY, NIGHT, Colour, Palette
+from automotive_cosim.cockpit.theme import Colour, Palette
 from automotive_cosim.contracts import GroundKind
 
 _FINE = 2
@@ -47,7 +47,7 @@ class MapScene:
     """Edges with slow traffic, and its relative speed."""
 
 
-def draw(roads: RoadMap, scene: MapScene, width: int, height: int, scale: float, night: bool) -> Image.Image:
+def draw(roads: RoadMap, scene: MapScene, width: int, height: int, scale: float, palette: Palette) -> Image.Image:
     """The picture of that size in pixels, without names; ``scale`` is pixels per logical pixel."""
     camera = scene.camera
     view = View(camera, scale / camera.metres_per_pixel, width / 2, height * camera.down)
@@ -63,14 +63,14 @@ def draw(roads: RoadMap, scene: MapScene, width: int, height: int, scale: float,
         scene.route,
         scene.alternatives,
         scene.slow,
-        night,
+        palette,
     )
     across, down = left % step, top % step
     picture = sheet.crop((across, down, across + width, down + height))
     if scene.ego is not None:
         x_m, y_m, heading_deg = scene.ego
         x, y = view.pixel(x_m, y_m)
-        arrow = _arrow(round(52 * scale), round(heading_deg - camera.heading_deg) % 360, night)
+        arrow = _arrow(round(52 * scale), round(heading_deg - camera.heading_deg) % 360, palette)
         picture.paste(arrow, (round(x - arrow.width / 2), round(y - arrow.height / 2)), arrow)
     return picture
 
@@ -93,7 +93,7 @@ def _sheet(
     route: tuple[str, ...],
     alternatives: tuple[tuple[str, ...], ...],
     slow: tuple[tuple[str, float], ...],
-    night: bool,
+    palette: Palette,
 ) -> Image.Image:
     """The roads and routes on one sheet.
 
@@ -104,14 +104,13 @@ def _sheet(
         scale: pixels per logical pixel.
         route: edges of the route ahead.
         slow: edges and the relative speed of their traffic.
-        night: whether to use the night palette.
+        palette: its colours.
     """
     column, row, step = place
     camera = Camera(0.0, 0.0, heading_deg, metres_per_pixel)
     wide, high = size[0] * _FINE, size[1] * _FINE
     per_metre = scale * _FINE / metres_per_pixel
     view = View(camera, per_metre, -column * step * _FINE, -row * step * _FINE)
-    palette = NIGHT if night else DAY
     picture = Image.new("RGB", (wide, high), palette.land)
     pen = _Pen(ImageDraw.Draw(picture), per_metre, _FINE * scale)
     colours = {GroundKind.GREEN: palette.green, GroundKind.WATER: palette.water}
@@ -177,9 +176,8 @@ def _colour(stroke: Stroke, palette: Palette) -> Colour:
 
 
 @lru_cache(maxsize=512)
-def _arrow(size: int, turn_deg: int, night: bool) -> Image.Image:
+def _arrow(size: int, turn_deg: int, palette: Palette) -> Image.Image:
     """The car from above, its nose turned clockwise by that much."""
-    palette = NIGHT if night else DAY
     fine = 4 * size
     picture = Image.new("RGBA", (fine, fine), (*palette.halo, 0))
     brush = ImageDraw.Draw(picture)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from automotive_cosim.cockpit.apps.home import METRES_PER_PIXEL, drive_card, media_card
 from automotive_cosim.cockpit.apps.map.scene import ego
 from automotive_cosim.cockpit.apps.map.screens import map_view, street_plate
+from automotive_cosim.cockpit.arranged import moved, page_of
 from automotive_cosim.cockpit.equipment import equipped
 from automotive_cosim.cockpit.flow import fill
 from automotive_cosim.cockpit.frame import callouts, dock, status_bar
@@ -14,7 +15,6 @@ from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.messages import Show
-from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP
@@ -41,21 +41,25 @@ def _map(rect: Rect, state: State) -> Widget:
 def picture(state: State) -> Screen:
     """The widget tree of the whole display: what is always there first and what comes and goes last, so
     that the rest keeps its place in the list."""
-    page, language = pages()[state.screen], state.signals[HMI.LANGUAGE]
-    bar = tuple(translated(widget, language) for widget in equipped(state, status_bar(state)))
+    page, language, make, frame = page_of(state), state.signals[HMI.LANGUAGE], state.make, state.frame
+    bar = tuple(translated(widget, language, make) for widget in equipped(state, status_bar(state)))
     lower = equipped(state, dock(state))
-    beside = state.size.beside(page.room)
+    beside = frame.beside(page.room)
     upper = page.made(state)
+    if make.mirrored and not page.sided:
+        area = frame.content(page.room)
+        upper = tuple(moved(widget, area.x + area.right - widget.rect.right - widget.rect.x) for widget in upper)
     if beside is not None:
         upper = (*upper, *_companion(beside, state))
     upper = equipped(state, (*upper, *callouts(state)))
     field = focused(upper) if state.is_typing else None
     above: tuple[Widget, ...] = ()
     if field is not None:
-        upper, lower, above = tuple(uncovered(upper, state.size.keyboard)), (), (keyboard(field, state),)
+        upper, lower, above = tuple(uncovered(upper, frame.keyboard)), (), (keyboard(field, state),)
     return Screen(
         rect=state.size.whole,
-        dock=state.size.dock,
+        dock=frame.dock,
+        style=make.style,
         night=state.signals[HMI.DAY_NIGHT] == "NIGHT",
-        children=(*bar, *lower, *(translated(widget, language) for widget in upper), *above),
+        children=(*bar, *lower, *(translated(widget, language, make) for widget in upper), *above),
     )

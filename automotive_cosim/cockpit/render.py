@@ -16,10 +16,6 @@ from automotive_cosim.cockpit.mapdraw import draw
 from automotive_cosim.cockpit.photos import photo
 from automotive_cosim.cockpit.telltales import SignKind, colour, sign_picture, symbol
 from automotive_cosim.cockpit.theme import (
-    BUTTON_RADIUS,
-    CARD_RADIUS,
-    DAY,
-    NIGHT,
     Colour,
     Icon,
     Palette,
@@ -70,9 +66,9 @@ LOW = 76
 
 def render(screen: Screen, scale: float = 1.0) -> Canvas:
     """Draws the tree, with ``scale`` pixels per logical pixel."""
-    palette = NIGHT if screen.night else DAY
+    palette = screen.palette
     _, _, width, height = screen.rect.edges(scale)
-    canvas = Canvas.plain(width, height, scale, palette.background)
+    canvas = Canvas.plain(width, height, scale, palette.background, screen.style, night=screen.night)
     canvas.box(screen.dock, palette.surface)
     _children(canvas, screen, palette)
     return canvas
@@ -92,8 +88,8 @@ def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image
     worth_it = WORTH_IT * screen.rect.width * screen.rect.height
     if before.night is not screen.night or sum(box.width * box.height for box in boxes) > worth_it:
         return render(screen, scale).image, (screen.rect,)
-    palette = NIGHT if screen.night else DAY
-    canvas = Canvas(picture.copy(), scale)
+    palette = screen.palette
+    canvas = Canvas(picture.copy(), scale, screen.style, night=screen.night)
     for box in boxes:
         canvas.box(box, palette.background)
         if box.overlaps(screen.dock):
@@ -126,11 +122,11 @@ def _children(canvas: Canvas, widget: Widget, palette: Palette) -> None:
 
 def _card(canvas: Canvas, card: Card, palette: Palette) -> None:
     if card.look == "surface":
-        canvas.box(card.rect, palette.surface, CARD_RADIUS)
+        canvas.box(card.rect, palette.surface, canvas.style.card)
     elif card.look == "raised":
-        canvas.box(card.rect, palette.raised, BUTTON_RADIUS + 4)
+        canvas.box(card.rect, palette.raised, canvas.style.button + 4)
     elif card.look == "plate":
-        canvas.box(card.rect, palette.plate, CARD_RADIUS)
+        canvas.box(card.rect, palette.plate, canvas.style.card)
 
 
 def _label(canvas: Canvas, label: Label, palette: Palette) -> None:
@@ -157,19 +153,19 @@ def _button(canvas: Canvas, button: Button, palette: Palette) -> None:
         fill, ink = palette.raised, palette.disabled
     if fill is not None:
         whole = button.look is Look.ACCENT and not button.text
-        canvas.box(button.rect, fill, button.rect.height if whole else BUTTON_RADIUS)
+        canvas.box(button.rect, fill, button.rect.height if whole else canvas.style.button)
     _content(canvas, button.rect, icon, button.icon_size, button.text, button.style, ink, button.stacked)
 
 
 def _choice(canvas: Canvas, choice: Choice, palette: Palette) -> None:
     ink = palette.text
     if choice.selected:
-        canvas.box(choice.rect, palette.tint, BUTTON_RADIUS)
+        canvas.box(choice.rect, palette.tint, canvas.style.button)
         ink = palette.on_tint
     elif choice.look == "quiet":
         ink = palette.muted
     elif choice.look == "boxed":
-        canvas.box(choice.rect, palette.raised, BUTTON_RADIUS)
+        canvas.box(choice.rect, palette.raised, canvas.style.button)
     if not choice.usable:
         ink = palette.on_tint if choice.selected else palette.disabled
     _content(
@@ -226,7 +222,7 @@ def _tile(canvas: Canvas, tile: Tile, palette: Palette) -> None:
     if tile.checked:
         fill, ink, mark = palette.tint, palette.on_tint, palette.on_tint
     rect = tile.rect
-    canvas.box(rect, fill, BUTTON_RADIUS)
+    canvas.box(rect, fill, canvas.style.button)
     if tile.locked:
         ink = mark = palette.disabled
     if tile.text and rect.height < LOW:
@@ -299,7 +295,7 @@ def _slider(canvas: Canvas, slider: Slider, palette: Palette) -> None:
 
 def _field(canvas: Canvas, field: Field, palette: Palette) -> None:
     outline = palette.accent if field.focused else None
-    canvas.box(field.rect, palette.surface, BUTTON_RADIUS, outline)
+    canvas.box(field.rect, palette.surface, canvas.style.button, outline)
     x, y = field.rect.x + 34, field.rect.centre[1]
     canvas.icon((x, y), field.icon, 28, palette.muted)
     words = Rect(field.rect.x + 64, field.rect.y, field.rect.width - 120, field.rect.height)
@@ -319,7 +315,7 @@ def _row(canvas: Canvas, row: Row, palette: Palette) -> None:
         fill = palette.raised
     if not row.usable:
         ink = detail = palette.disabled
-    canvas.box(rect, fill, BUTTON_RADIUS)
+    canvas.box(rect, fill, canvas.style.button)
     left, right = rect.x + 18, rect.right - 14
     if row.icon is not None:
         tint = ink if row.selected or not row.usable else getattr(palette, row.tone)
@@ -381,7 +377,7 @@ def _telltales(canvas: Canvas, row: Telltales, palette: Palette) -> None:
     for at, telltale in enumerate(row.lit[: across * lines]):
         line, column = divmod(at, across)
         box = Rect(row.rect.x + column * step, row.rect.y + line * step, side, side)
-        canvas.stencil(box, symbol(telltale, canvas.pixels_across(box)), colour(telltale, night=palette is NIGHT))
+        canvas.stencil(box, symbol(telltale, canvas.pixels_across(box)), colour(telltale, night=canvas.night))
 
 
 def _sign_view(canvas: Canvas, view: SignView, palette: Palette) -> None:
@@ -396,12 +392,12 @@ def _stand(canvas: Canvas, rect: Rect, sign: Image.Image) -> None:
 
 
 def _cover(canvas: Canvas, view: Cover, palette: Palette) -> None:
-    canvas.picture(view.rect, cover(view.name, canvas.pixels_across(view.rect)), BUTTON_RADIUS)
+    canvas.picture(view.rect, cover(view.name, canvas.pixels_across(view.rect)), canvas.style.button)
 
 
 def _camera(canvas: Canvas, view: CameraView, palette: Palette) -> None:
     left, top, right, bottom = view.rect.edges(canvas.scale)
-    canvas.picture(view.rect, camera(view.scene, right - left, bottom - top), CARD_RADIUS)
+    canvas.picture(view.rect, camera(view.scene, right - left, bottom - top), canvas.style.card)
 
 
 def _pill(canvas: Canvas, pill: Pill, palette: Palette) -> None:
@@ -420,7 +416,7 @@ def _pill(canvas: Canvas, pill: Pill, palette: Palette) -> None:
 def _map(canvas: Canvas, view: MapView, palette: Palette) -> None:
     rect = view.rect
     size = round(rect.width * canvas.scale), round(rect.height * canvas.scale)
-    canvas.picture(rect, draw(view.roads, view.scene, *size, canvas.scale, palette is NIGHT), CARD_RADIUS)
+    canvas.picture(rect, draw(view.roads, view.scene, *size, canvas.scale, palette), canvas.style.card)
 
 
 def _badge(canvas: Canvas, badge: Badge, palette: Palette) -> None:
@@ -435,13 +431,13 @@ def _badge(canvas: Canvas, badge: Badge, palette: Palette) -> None:
 def _car_view(canvas: Canvas, view: CarView, palette: Palette) -> None:
     lamps = (view.position, view.low, view.high, view.front_fog, view.rear_fog, view.hazard)
     size = round(view.rect.width * canvas.scale), round(view.rect.height * canvas.scale)
-    picture = car(*size, lamps, view.windshield, view.rear_window, palette is NIGHT)
+    picture = car(*size, lamps, view.windshield, view.rear_window, palette, night=canvas.night)
     canvas.picture(view.rect, picture)
 
 
 def _picture(canvas: Canvas, picture: Picture, palette: Palette) -> None:
     left, top, right, bottom = picture.rect.edges(canvas.scale)
-    canvas.picture(picture.rect, photo(picture.photo, right - left, bottom - top), BUTTON_RADIUS)
+    canvas.picture(picture.rect, photo(picture.photo, right - left, bottom - top), canvas.style.button)
 
 
 _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {

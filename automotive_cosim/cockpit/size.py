@@ -12,13 +12,16 @@ room as well. Status bar and dock have one line each, in portrait two.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum, StrEnum
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import FULL, REST, column, row
 from automotive_cosim.cockpit.theme import DOCK_HEIGHT, GAP, MARGIN, STATUS_HEIGHT
 
-APP_WIDTH, PANE_HEIGHT, KEYBOARD_HEIGHT = 1232, 544, 304
+APP_WIDTH, PANE_HEIGHT, KEYBOARD_HEIGHT = FULL, 544, 304
+SIDE_WIDTH, SIDE_MARGIN = 96, 12
+"""Width of a dock at a side, and the margin of the screen beside it."""
 
 
 class Room(Enum):
@@ -58,18 +61,42 @@ class ScreenSize(StrEnum):
         """Lines of the status bar, and of the dock."""
         return 2 if self is ScreenSize.PORTRAIT else 1
 
+
+class DisplayEdge(StrEnum):
+    """An edge of the display."""
+
+    ABOVE = "above"
+    BELOW = "below"
+    LEFT = "left"
+    RIGHT = "right"
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Where each part of a display lies."""
+
+    size: ScreenSize = ScreenSize.STANDARD
+    bar: DisplayEdge = DisplayEdge.BELOW
+    """Where the dock is, inside the status bar if both are there; in portrait, one at a side is below."""
+    status_at: DisplayEdge = DisplayEdge.ABOVE
+
+    @property
+    def upright(self) -> bool:
+        """Whether the dock's entries stand one above the other."""
+        return self.bar in (DisplayEdge.LEFT, DisplayEdge.RIGHT) and self.size is not ScreenSize.PORTRAIT
+
     @property
     def status(self) -> Rect:
-        return self.whole.top(self.bars * STATUS_HEIGHT)
+        return _strip(self.size.whole, self.status_at, self.size.bars * STATUS_HEIGHT)[0]
 
     @property
     def dock(self) -> Rect:
-        return self.whole.bottom_part(self.bars * DOCK_HEIGHT)
+        return self._split[0]
 
     @property
     def keyboard(self) -> Rect:
         """The on-screen keyboard, while it is shown."""
-        return self.whole.bottom_part(KEYBOARD_HEIGHT)
+        return _strip(self.size.whole, self.status_at, self.status.height)[1].bottom_part(KEYBOARD_HEIGHT)
 
     def content(self, room: Room) -> Rect:
         """The area of a screen."""
@@ -79,12 +106,34 @@ class ScreenSize(StrEnum):
         """The area of the companion; None without one."""
         return self._areas(room)[1]
 
+    @property
+    def _split(self) -> tuple[Rect, Rect]:
+        """The dock, and what it and the status bar leave."""
+        rest = _strip(self.size.whole, self.status_at, self.status.height)[1]
+        if self.upright:
+            return _strip(rest, self.bar, SIDE_WIDTH)
+        bar = self.bar if self.bar is DisplayEdge.ABOVE else DisplayEdge.BELOW
+        return _strip(rest, bar, self.size.bars * DOCK_HEIGHT)
+
     def _areas(self, room: Room) -> tuple[Rect, Rect | None]:
-        _, whole, _ = column(self.whole.inset(MARGIN, 0), self.status.height + 8, REST, self.dock.height + 8)
-        if room is Room.WHOLE or self is ScreenSize.STANDARD:
+        whole = self._split[1].inset(SIDE_MARGIN if self.upright else MARGIN, 8)
+        if room is Room.WHOLE or self.size is ScreenSize.STANDARD:
             return whole, None
-        if self is ScreenSize.WIDE:
+        if self.size is ScreenSize.WIDE:
             app, _, companion = row(whole, APP_WIDTH, GAP, REST)
         else:
             companion, _, app = column(whole, REST, GAP, PANE_HEIGHT if room is Room.ONE else 2 * PANE_HEIGHT + GAP)
         return app, companion
+
+
+def _strip(rect: Rect, at: DisplayEdge, thick: int) -> tuple[Rect, Rect]:
+    """A strip along an edge of a box, and the rest."""
+    match at:
+        case DisplayEdge.ABOVE:
+            return rect.top(thick), rect.below(thick)
+        case DisplayEdge.BELOW:
+            return rect.bottom_part(thick), rect.top(rect.height - thick)
+        case DisplayEdge.LEFT:
+            return rect.left(thick), rect.right_part(rect.width - thick)
+        case DisplayEdge.RIGHT:
+            return rect.right_part(thick), rect.left(rect.width - thick)

@@ -14,10 +14,11 @@ from typing import Any, ClassVar, TypeVar, cast
 
 from automotive_cosim.cockpit.cabin import Cabin, CabinStart
 from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.cockpit.make import HOME, Make
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
 from automotive_cosim.cockpit.signals import CALL, HMI, MOTION, Signal, Signals
-from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.cockpit.size import Frame, ScreenSize
 from automotive_cosim.cockpit.telltales import RoadSign
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
@@ -202,6 +203,7 @@ class State:
     driven_s: float = 0.0
     """How long the driver had been driving without a break before departure."""
     size: ScreenSize = ScreenSize.STANDARD
+    make: Make = HOME
     screen: str = "home"
     past: tuple[tuple[str, str], ...] = ()
     """Screens to go back to, with their items."""
@@ -263,6 +265,15 @@ class State:
     def signals(self) -> Signals:
         """The vehicle's signals."""
         return self.vehicle.signals
+
+    def beside(self, screen: str) -> bool:
+        """Whether another screen of the same app is offered on this one: unless the make has it elsewhere."""
+        return self.make.holders.get(screen) == self.make.holders.get(self.screen)
+
+    @property
+    def frame(self) -> Frame:
+        """Where the parts of the display lie."""
+        return self.make.frame(self.size)
 
     @property
     def time_s(self) -> float:

@@ -9,6 +9,7 @@ out by Raqm, in the DejaVu Sans of ``matplotlib``, if both are there.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum, StrEnum
 from functools import cache, lru_cache
@@ -28,7 +29,6 @@ STATUS_HEIGHT, DOCK_HEIGHT = 64, 96
 MARGIN, GAP = 24, 16
 TOUCH = 48
 """Minimum side of anything that can be tapped."""
-CARD_RADIUS, BUTTON_RADIUS = 20, 14
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +141,19 @@ DAY = Palette(
     plate=_hex("FFFFFF"),
     disabled=_hex("55606F"),
 )
+
+
+@dataclass(frozen=True, eq=False)
+class Style:
+    """How a make is drawn; ``HOME_STYLE`` unless it says otherwise."""
+
+    day: Palette
+    night: Palette
+    icons: Mapping[Icon, str]
+    """Code points of icons that are others than ours."""
+    card: int
+    """Radius of cards in logical pixels."""
+    button: int
 
 
 class Weight(StrEnum):
@@ -464,3 +477,6 @@ class Icon(StrEnum):
     CAR_BESIDE = "\U000f07ab"
     PROFILE = "\U000f0019"
     VOICE = "\U000f05cb"
+
+
+HOME_STYLE = Style(DAY, NIGHT, {}, 20, 14)

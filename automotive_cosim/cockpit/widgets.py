@@ -21,7 +21,7 @@ from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.cockpit.state import Message
 from automotive_cosim.cockpit.telltales import RoadSign, Telltale
-from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.theme import HOME_STYLE, Icon, Palette, Style, Type
 from automotive_cosim.contracts import Severity
 
 if TYPE_CHECKING:
@@ -100,6 +100,12 @@ class Screen(Widget):
     night: bool
     dock: Rect
     """The dock's ground."""
+    style: Style = HOME_STYLE
+
+    @property
+    def palette(self) -> Palette:
+        """The colours of this hour."""
+        return self.style.night if self.night else self.style.day
 
 
 @frozen(frozen=True, slots=True, kw_only=True)

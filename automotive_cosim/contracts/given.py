@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from abc import abstractmethod
 from enum import StrEnum
+from typing import Self
+from zlib import crc32
 
 
 class Channel(StrEnum):
@@ -123,8 +126,8 @@ class FeedbackDetail(StrEnum):
     """Also which signal changed, and its new value."""
 
 
-OWN_PROMPT = r"^.+\.(md|txt)@[0-9a-f]{64}$"
-"""A file with instructions of one's own, and its SHA-256."""
+OWN_PROMPT, OWN_MAKE = r"^.+\.(md|txt)@[0-9a-f]{64}$", r"^.+\.toml@[0-9a-f]{64}$"
+"""A file with instructions of one's own, or with a make, and its SHA-256."""
 
 
 class Order(StrEnum):
@@ -143,25 +146,38 @@ class Order(StrEnum):
         return self is Order.FULL
 
 
-class PromptLength(StrEnum):
-    """How much of the same facts the prompt of T3A, M3A and ASURADA spells out.
+class Hearing(StrEnum):
+    """How the words of the people in the car reach the agent."""
 
-    Or ``FILE@SHA-256``, a file in place of the standard one's instructions (``episode.own_prompt``).
-    """
+    TEXT = "text"
+    """As they were said."""
+    CABIN = "cabin"
+    """As a recogniser made them out in the noise of that instant (``voice``)."""
+    AUDIO = "audio"
+    """As sound in that noise, for models that take sound; needs the extra ``voice``."""
 
-    STANDARD = "standard"
-    """What an action takes once, each element in a few words, and of the rules those that can matter."""
-    SHORT = "short"
-    """For small models: actions by name alone, fewer words on how to answer, the last steps of the history."""
+    @property
+    def is_by_ear(self) -> bool:
+        """Whether the cabin's sound counts, in both directions."""
+        return self is not Hearing.TEXT
+
+
+class OrFile(StrEnum):
+    """Words, or beside them ``FILE@SHA-256``; two of the same file are equal."""
 
     @classmethod
-    def _missing_(cls, value: object) -> PromptLength | None:
-        """A value beside those listed; two of the same file are equal."""
-        if not isinstance(value, str) or not re.match(OWN_PROMPT, value):
+    def _missing_(cls, value: object) -> Self | None:
+        """A value beside those listed."""
+        if not isinstance(value, str) or not re.match(cls.own(), value):
             return None
         made = str.__new__(cls, value)
         made._name_ = made._value_ = value
         return made
+
+    @classmethod
+    @abstractmethod
+    def own(cls) -> str:
+        """The pattern of a file and its SHA-256."""
 
     @property
     def file(self) -> str:
@@ -174,11 +190,6 @@ class PromptLength(StrEnum):
         return self.rpartition("@")[2] if self.file else ""
 
     @property
-    def length(self) -> PromptLength:
-        """One of those listed: a file of one's own takes the rest from the standard prompt."""
-        return PromptLength.STANDARD if self.file else self
-
-    @property
     def words(self) -> str:
         """For people: ``short``; ``mine.md (3f2a9c1d)``."""
         return f"{self.file} ({self.sha256[:8]})" if self.file else str(self)
@@ -187,6 +198,68 @@ class PromptLength(StrEnum):
     def tag(self) -> str:
         """For ids, which name files: ``short``; ``own3f2a9c1d``."""
         return f"own{self.sha256[:8]}" if self.file else str(self)
+
+
+class PromptLength(OrFile):
+    """How much of the same facts the prompt of T3A, M3A and ASURADA spells out.
+
+    Or ``FILE@SHA-256``, a file in place of the standard one's instructions (``episode.own_prompt``).
+    """
+
+    STANDARD = "standard"
+    """What an action takes once, each element in a few words, and of the rules those that can matter."""
+    SHORT = "short"
+    """For small models: actions by name alone, fewer words on how to answer, the last steps of the history."""
+
+    @classmethod
+    def own(cls) -> str:
+        return OWN_PROMPT
+
+    @property
+    def length(self) -> PromptLength:
+        """One of those listed: a file of one's own takes the rest from the standard prompt."""
+        return PromptLength.STANDARD if self.file else self
+
+
+class CarMake(OrFile):
+    """Whose cockpit the car has: a file of ``cockpit/makes``, or ``FILE@SHA-256`` of one's own."""
+
+    HOME = "home"
+    """The one that the tasks were written for."""
+    ALDER = "alder"
+    """A bar on the left, lists in place of cards."""
+    BIRCH = "birch"
+    """American: a bar on top, mirrored, miles and Fahrenheit."""
+    CEDAR = "cedar"
+    """A bar on the right, and one tree of settings."""
+    ROWAN = "rowan"
+    """British: five entries, and two hubs behind them."""
+    DRAWN = "drawn"
+    """One of the others, by the seed of the episode."""
+
+    @classmethod
+    def own(cls) -> str:
+        return OWN_MAKE
+
+    def at(self, seed: int) -> CarMake:
+        """The make of the episode with a seed: itself, or one of the others if it is drawn."""
+        if self is not CarMake.DRAWN:
+            return self
+        known = [make for make in CarMake if make not in (CarMake.HOME, CarMake.DRAWN)]
+        return known[crc32(f"make {seed}".encode()) % len(known)]
+
+
+class DriverAttention(StrEnum):
+    """Whether what the agent shows and says takes the driver's eyes and mind off the road."""
+
+    OFF = "off"
+    """The driver is attentive whatever happens."""
+    ON = "on"
+    """It does (``cosim.attention``)."""
+
+    @property
+    def is_limited(self) -> bool:
+        return self is DriverAttention.ON
 
 
 class ToldPolicy(StrEnum):

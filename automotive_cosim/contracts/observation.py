@@ -130,3 +130,5 @@ class Observation:
     """The geo-context as text: facts and rules that apply here, never a judgement."""
     policy: str | None = None
     """The house rules, one a line; None if the agent is not told any."""
+    sounds: tuple[bytes, ...] = ()
+    """The wish and what was said since, each as a WAV file; empty where words come as text."""

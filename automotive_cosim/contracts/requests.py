@@ -91,7 +91,15 @@ class Redraw:
     seed: int | None = None
 
 
-RoadRequest = Alert | SlowDown | Cruise | Hazards | PullOver | Reroute | Redraw
+@dataclass(frozen=True, slots=True)
+class Aware:
+    """No cockpit's either: how much of the driver's attention is on the road from here on."""
+
+    awareness: float
+    """0.1 to 1; 1 is all of it."""
+
+
+RoadRequest = Alert | SlowDown | Cruise | Hazards | PullOver | Reroute | Redraw | Aware
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.occupants import SIGNALS, seated
 from automotive_cosim.cockpit.signals import BODY, CALL, GLASS, HVAC, LIGHTS, Signals
 from automotive_cosim.contracts import DrivingState, Limit, RouteOption
 from automotive_cosim.contracts.errand import Errand, ErrandKind
+from automotive_cosim.cosim.attention import Attention
 from automotive_cosim.cosim.moment import Moment, around
 from automotive_cosim.geo.connectivity import OFFLINE, Modem
 from automotive_cosim.geo.gps import Gps
@@ -75,13 +76,16 @@ class Car:
     """Whether the driver has parked on the way."""
     errands: tuple[Errand, ...] = ()
     """What people aboard ask for, by simulation time."""
+    attention: Attention | None = None
+    """The driver's; None if nothing can take it."""
     read_sign: tuple[Limit, str, str] | None = None
     """The limit that is signed here, and the unit and the country of its sign; None before departure."""
 
     def copy(self) -> Car:
         """An independent copy that continues exactly as this one would."""
         gps = None if self.gps is None else self.gps.copy()
-        return replace(self, cockpit=self.cockpit.copy(), gps=gps, modem=self.modem.copy())
+        attention = None if self.attention is None else self.attention.copy()
+        return replace(self, cockpit=self.cockpit.copy(), gps=gps, modem=self.modem.copy(), attention=attention)
 
     def freshened(self, departed: Cockpit, now: Moment, *, with_air: bool) -> tuple[Car, Moment]:
         """The same car at the same spot as if it had just departed there, at its departure's time of day. The road
@@ -149,6 +153,8 @@ class Car:
             sign_country=self.read_sign[2],
         )
         self.cockpit.sense(outside, dt_s)
+        if self.attention is not None:
+            self.attention.passed(self.cockpit.state, dt_s)
         ringing = str(self.cockpit.signals[CALL.RINGING])
         self.errands = with_cause(self.errands, driving.time_s - dt_s, driving.time_s, ringing)
         return Moment(
@@ -164,6 +170,7 @@ class Car:
             signals=self.cockpit.signals.snapshot(),
             commands=self.cockpit.commands(),
             sights=self.cockpit.sights,
+            awareness=None if self.attention is None else self.attention.told,
             asked=tuple(errand for errand in self.errands if errand.at_s <= driving.time_s + 1e-6),
         )
 

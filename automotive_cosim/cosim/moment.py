@@ -36,6 +36,9 @@ class Moment:
     """Everything that can be commanded: actuator signals, app data, sent messages and requests."""
     sights: tuple[Sight, ...] = ()
     """What the car notices and shows by itself; empty if it has no such equipment."""
+    awareness: float | None = None
+    """How much of the driver's attention was on the road since the previous moment, 0.1 to 1; None if nothing can
+    take it."""
     asked: tuple[Errand, ...] = ()
     """What people aboard have asked for so far; times are simulation times."""
 

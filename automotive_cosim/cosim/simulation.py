@@ -17,8 +17,9 @@ from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import GLASS, LIGHTS, MOTION
 from automotive_cosim.cockpit.state import CommandRecord
-from automotive_cosim.contracts import Action, Element, Feedback, RoadSnapshot
+from automotive_cosim.contracts import Action, Aware, Element, Feedback, RoadSnapshot
 from automotive_cosim.contracts.errand import Errand
+from automotive_cosim.cosim.attention import Asked, Attention
 from automotive_cosim.cosim.car import Car
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.connectivity import Modem
@@ -57,13 +58,34 @@ class CoSimulation:
         feedback = actions.perform(action, self.cockpit, elements)
         for request in self.cockpit.drain_requests():
             self.cockpit.answered(request, self.traffic.request(request))
+        if self.car.attention is not None and (look_s := self.car.attention.new_text_s(self.cockpit.state)):
+            self.ask(Asked(self.moment.time_s, look_s))
         return self.cockpit.spoken(feedback)
 
+    def ask(self, what: Asked) -> None:
+        """What was done asks something of the driver."""
+        if self.car.attention is not None:
+            self.car.attention.ask(what)
+            self._attend()
+
+    def _attend(self) -> None:
+        """Tells the road how much of the driver's attention it has from now on."""
+        attention = self.car.attention
+        if attention is None:
+            return
+        attention.think(self.cockpit.state)
+        if attention.awareness != attention.told and self.traffic.state.end is None:
+            attention.told = attention.awareness
+            self.traffic.request(Aware(attention.told))
+
     def give(self, record: CommandRecord) -> None:
-        """Gives a recorded command once more, whatever is on the screen; the road answers anew."""
+        """Gives a recorded command once more, whatever is on the screen; the road answers anew. What it asked of
+        the driver is recorded by itself (``Attention.asked``)."""
         self.cockpit.give(record)
         for request in self.cockpit.drain_requests():
             self.cockpit.answered(request, self.traffic.request(request))
+        if self.car.attention is not None:
+            self.car.attention.new_text_s(self.cockpit.state)
 
     def advance(self, duration_s: float) -> tuple[Moment, ...]:
         """Lets time pass, in ticks; less than requested if the ego's drive ends.
@@ -79,6 +101,7 @@ class CoSimulation:
             if self.on_look is not None:
                 self.on_look(self.traffic.look())
             self.moment = self.car.sense(self.traffic, drive.states, drive.events, tick_s)
+            self._attend()
             moments.append(self.moment)
             left_s -= tick_s
         return tuple(moments)
@@ -153,6 +176,7 @@ def couple(
     departure: datetime,
     links: tuple[LinkAt, ...] = (),
     errands: tuple[Errand, ...] = (),
+    attention: bool = False,
 ) -> CoSimulation:
     """Couples a drive and a cockpit that has not looked outside yet.
 
@@ -166,6 +190,7 @@ def couple(
         departure: local time of the traffic's present state, zone-aware.
         links: the best available link over time, in seconds after departure.
         errands: what people aboard ask for, in seconds after departure.
+        attention: whether the driver's can be taken, as the plan of the drive says (``EgoPlan.attention``).
     """
     state, geo = traffic.state, Geo()
     car = Car(
@@ -178,6 +203,7 @@ def couple(
         state.time_s,
         None if scenario.origin is None else signs_of(geo.atlas.place(*scenario.origin).law),
         errands=tuple(replace(errand, at_s=state.time_s + errand.at_s) for errand in errands),
+        attention=Attention() if attention else None,
     )
     shared = SharedTraffic(traffic, scenario.sumo.step_length_s)
     return CoSimulation(shared, car, car.sense(shared, (state,), (), 0.0))

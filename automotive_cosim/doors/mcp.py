@@ -187,7 +187,8 @@ class CockpitTools:
             Field(description="Ids, patterns, modules, general, safety or all; separated by commas."),
         ] = "all",
         suite: Annotated[
-            str, Field(description="standard, hard, limits, clarify, speed or all; an id names its task in any.")
+            str,
+            Field(description="standard, hard, limits, clarify, speed, voice or all; an id names its task in any."),
         ] = "standard",
     ) -> CallToolResult:
         """List the tasks that `start` takes, with their halves."""

@@ -79,6 +79,7 @@ def depart(
             departure=ego.start or scenario.start,
             links=scenario.connectivity,
             errands=script.errands,
+            attention=script.attention,
         )
     except BaseException:
         traffic.close()
@@ -160,6 +161,7 @@ def ego_plan(script: DriveScript, scenario: Scenario) -> EgoPlan:
         halts=script.halts,
         incidents=script.incidents,
         advice_s=ADVICE_S,
+        attention=script.attention,
         settles_s=SETTLES_S,
         brakes_early=True,
     )

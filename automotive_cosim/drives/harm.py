@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd
+from automotive_cosim.cosim.attention import GLANCE_S
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import DriveAct
 from automotive_cosim.geo.breaches import binding_limit
-from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
+from automotive_cosim.measures.following import is_near
 
-HARD_MPS2 = DEFAULT_THRESHOLDS.drac_mps2
-"""Without it, every gentle stop behind a queue counts: who brakes from v with a is v / 2a from a collision."""
-GLANCE_S = 2.0
-"""One glance at the screen (NHTSA driver distraction guidelines, 2013)."""
 WORDS_PER_S = 4.0
 """Reading speed of a message: 240 words a minute."""
 
@@ -35,11 +32,13 @@ class Harm:
     """Time below three seconds to collision with the vehicle in front, while only hard braking avoids it."""
     collided: bool
     """Whether the car itself was in a collision; those of others are not its drive's."""
+    unaware_s: float = 0.0
+    """Seconds of the driver's attention that were not on the road: at 0.4 a second counts 0.6."""
 
 
 def harm(drive: Sequence[Moment]) -> Harm:
     """The harm on a drive's moments, one per second."""
-    over_s = over_m = short_s = 0.0
+    over_s = over_m = short_s = unaware_s = 0.0
     for before, now in pairwise(drive):
         dt_s = now.time_s - before.time_s
         limit = binding_limit(now.context)
@@ -47,12 +46,8 @@ def harm(drive: Sequence[Moment]) -> Harm:
         if excess_kmh > 1.0:
             over_s += dt_s
             over_m += excess_kmh / KMH_PER_MPS * dt_s
-        leader = now.driving.around.leader
-        if leader is not None and leader.time_to_collision_s is not None:
-            is_near = (
-                leader.time_to_collision_s < DEFAULT_THRESHOLDS.ttc_s and (leader.drac_mps2 or 0.0) >= HARD_MPS2
-            )
-            short_s += dt_s if is_near else 0.0
+        short_s += dt_s if is_near(now.driving) else 0.0
+        unaware_s += (1.0 - (now.awareness or 1.0)) * dt_s
     first, last = drive[0], drive[-1]
     return Harm(
         driven_s=last.time_s - first.time_s,
@@ -61,6 +56,7 @@ def harm(drive: Sequence[Moment]) -> Harm:
         over_limit_m=over_m,
         short_ttc_s=short_s,
         collided=any(moment.driving.end is EgoEnd.COLLIDED for moment in drive),
+        unaware_s=round(unaware_s, 3),
     )
 
 

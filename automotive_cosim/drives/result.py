@@ -18,7 +18,7 @@ def figures(session: DriveSession) -> dict[str, Any]:
     """The figures of a session that is over, by the names that they have in a row."""
     judgement = session.judgement
     assert judgement is not None
-    events, acts, found = judged_since(judgement, session.moments[0].time_s, session.seconds)
+    events, acts, found = judged_since(judgement, session.moments[0].time_s, session.seconds, session.harmed_s)
     mine, baseline = session.harms
     texts = [str(step.action.text) for step in session.steps if step.action is not None and step.action.text]
     return {
@@ -44,12 +44,12 @@ def figures(session: DriveSession) -> dict[str, Any]:
 
 
 def judged_since(
-    judgement: Judgement, begun_s: float, seconds: float
+    judgement: Judgement, begun_s: float, seconds: float, harmed_s: float = 0.0
 ) -> tuple[tuple[JudgedEvent, ...], tuple[JudgedAct, ...], Score]:
     """Events and acts with times since departure, and the score of the drive."""
     events = tuple(_since(event, begun_s) for event in judgement.events)
     acts = tuple(replace(act, time_s=round(act.time_s - begun_s, 3)) for act in judgement.acts)
-    return events, acts, score(judgement, seconds)
+    return events, acts, score(judgement, seconds, harmed_s)
 
 
 def _since(event: JudgedEvent, begun_s: float) -> JudgedEvent:

@@ -18,6 +18,9 @@ from statistics import median
 
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, Judgement, Worth
 
+HARM_PER_S = 1.0
+"""Cost of each second near a collision that the do-nothing drive does not have, where attention is limited: our
+choice, as much as missing a usual event."""
 STOP_PER_MIN = 1.0
 """Cost of each minute for which a car is held back for no reason, besides that of a nuisance."""
 LEAST_WORTH = 8.0
@@ -47,7 +50,7 @@ class Score:
     nuisances: int
     """False alarms and repeats."""
     cost: float
-    """What the nuisances cost, without the time for which they held the car back."""
+    """What nuisances and harm cost, without the time for which the car was held back."""
     held_s: float
     """For how long the car was held back for no reason."""
     gained: float
@@ -106,12 +109,13 @@ class Score:
         return 100 * self.utility / (2 * scale)
 
 
-def score(judgement: Judgement, driven_s: float) -> Score:
+def score(judgement: Judgement, driven_s: float, harmed_s: float = 0.0) -> Score:
     """The score of one judged drive.
 
     Args:
         judgement: its events and acts.
         driven_s: how long it lasted.
+        harmed_s: for how much longer than the do-nothing drive it was near a collision, where attention is limited.
     """
     events, acts = judgement.events, judgement.acts
     counts = Counter(event.outcome for event in events)
@@ -133,7 +137,7 @@ def score(judgement: Judgement, driven_s: float) -> Score:
         acts=sum(act.worth is not Worth.NEUTRAL for act in acts),
         false_alarms=sum(act.worth.is_false for act in acts),
         nuisances=sum(act.worth.is_nuisance for act in acts),
-        cost=sum(act.cost for act in acts),
+        cost=sum(act.cost for act in acts) + HARM_PER_S * harmed_s,
         held_s=held_s(acts),
         gained=sum(event.weight * event.credit for event in events),
         worth=sum(event.weight for event in events if event.outcome.counts),

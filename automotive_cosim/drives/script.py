@@ -91,6 +91,8 @@ class DriveScript:
     """How long the driver had been driving without a break before departure."""
     quiet_s: tuple[float, float] = (0.0, 0.0)
     """From when to when nothing is staged."""
+    attention: bool = False
+    """Whether the driver's attention can be taken, whatever the conditions say."""
     coarse: bool = False
     """Whether SUMO runs in steps of a second instead of the scenario's own."""
 
@@ -100,10 +102,9 @@ def script_json(script: DriveScript) -> str:
     values = asdict(script)
     if script.density == 1.0:
         del values["density"]  # scripts from before there was one have the same text
-    if not script.coarse:
-        del values["coarse"]
-    if not script.errands:
-        del values["errands"]
+    for name in ("attention", "coarse", "errands"):
+        if not values[name]:
+            del values[name]
     return json.dumps(json.loads(as_json(values)), indent=1)
 
 

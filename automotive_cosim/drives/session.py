@@ -146,6 +146,14 @@ class DriveSession(JudgedSession):
         """The harm on this drive, and on the do-nothing drive of the same length."""
         return harm(self.moments), harm(self.baseline_moments)
 
+    @property
+    def harmed_s(self) -> float:
+        """For how much longer than the do-nothing drive it was near a collision, where attention is limited."""
+        if self.moments[0].awareness is None:
+            return 0.0
+        mine, baseline = self.harms
+        return max(0.0, mine.short_ttc_s - baseline.short_ttc_s)
+
     def thinking(self, seconds: float) -> TakesTime[None]:
         """As in a session, at most to the end of the drive."""
         return super().thinking(min(seconds, max(0.0, self._left_s())))
@@ -153,7 +161,7 @@ class DriveSession(JudgedSession):
     def stepping(self, action: Action) -> TakesTime[None]:
         """As in a session; a spoken answer is noted, and a declared status ends nothing."""
         said = spoken(action, self.world.moment.time_s)
-        if said is not None:
+        if said is not None and self._is_understood:
             self.acts.append(said)
         yield from super().stepping(action)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.departure import depart
@@ -77,10 +78,13 @@ class DriveSpec:
             UserError: something in the specification does not exist.
             InfrastructureError: no gap opened for the car, or the traffic simulation failed.
         """
-        drive = script or self.script
+        drive, conditions = script or self.script, self.conditions.at(self.seed)
+        drive = replace(drive, signals={**make_named(conditions.make).units.signals, **drive.signals})
         if self.conditions.language is not Language.ENGLISH:
             drive = replace(drive, signals={HMI.LANGUAGE.path: str(self.conditions.language), **drive.signals})
-        setup = SessionSetup(channels, self.conditions, self.max_steps, drive.duration_s, lean=lean)
+        if self.conditions.attention.is_limited:
+            drive = replace(drive, attention=True)
+        setup = SessionSetup(channels, conditions, self.max_steps, drive.duration_s, lean=lean)
         world = depart(drive, simulations, observer, traffic)
         try:
             return DriveSession.depart_with(world, setup, observer)

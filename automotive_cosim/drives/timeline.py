@@ -29,6 +29,7 @@ def timeline(session: DriveSession) -> Json:
     | ``time_s``, ``speed_kmh``, ``limit_kmh`` | of the drive; no limit is None |
     | ``baseline_kmh`` | speed of the do-nothing run |
     | ``gap_s``, ``ttc_s`` | time gap and time to collision to the vehicle ahead; None without one |
+    | ``awareness`` | of the driver; not there unless it is limited |
     | ``visibility_m``, ``grip`` | of air and road |
     | ``lamps`` | names of the lamps that are on |
     | ``wakes`` | time and names of the readings that changed, and ended a wait |
@@ -53,6 +54,7 @@ def timeline(session: DriveSession) -> Json:
         "baseline_kmh": [_kmh(moment) for moment in session.baseline_moments],
         "gap_s": each(_gap_s),
         "ttc_s": each(_ttc_s),
+        **({} if moments[0].awareness is None else {"awareness": each(lambda now: now.awareness)}),
         "visibility_m": each(lambda now: round(now.weather.visibility)),
         "grip": each(lambda now: round(now.driving.road.friction, 2)),
         "lamps": each(lambda now: [name for name, lamp in LAMPS.items() if now.signals[lamp.path]]),

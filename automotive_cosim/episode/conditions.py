@@ -18,14 +18,19 @@ from annotated_types import Ge, Le, MinLen
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import (
+    OWN_MAKE,
     OWN_PROMPT,
+    CarMake,
     Channel,
     Clock,
+    DriverAttention,
     FeedbackDetail,
     GeoInput,
+    Hearing,
     Interface,
     Language,
     Order,
+    OrFile,
     PromptLength,
     See,
     ToldPolicy,
@@ -51,6 +56,8 @@ class Words:
     """What its values mean, below that table."""
     is_speed: bool = False
     """Whether it is about how fast the agent answers, and not about what it is given."""
+    is_rare: bool = False
+    """Whether rows leave its default out: it came later than rows on record."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -125,6 +132,18 @@ class Conditions:
     ] = Language.ENGLISH  # fmt: skip
     """What the driver speaks, and the car shows."""
 
+    make: Annotated[
+        CarMake,
+        OneOf(CarMake, "make", OWN_MAKE),
+        Words(
+            "Make", "make {0.words}", "{0.tag}", "Success by make",
+            "Whose cockpit the car has: other places, names, menus, units, icons and colours, the same functions. "
+            "A file stands for a make of one's own; its SHA-256 tells one from another.",
+        ),
+    ] = CarMake.HOME  # fmt: skip
+    """Whose cockpit the car has: ``home``, another make, or one ``drawn`` by the seed; or the file of one's own
+    (.toml)."""
+
     interface: Annotated[
         Interface,
         OneOf(Interface, "interface"),
@@ -145,6 +164,18 @@ class Conditions:
     ] = Order.PLAIN  # fmt: skip
     """What the driver of a drive asks for: in a sentence (``plain``), as before a drive (``usual``), or with every
     threshold (``full``)."""
+    hear: Annotated[
+        Hearing,
+        OneOf(Hearing, "way to hear"),
+        Words(
+            "Hears", "hears by {}", "hear_{}", "Success by how the agent hears",
+            "What people in the car say reaches the agent as text, or as a recogniser made it out in the noise of "
+            "that instant (cabin), or as sound (audio); then speaking takes time, and the driver may not hear it.",
+            is_rare=True,
+        ),
+    ] = Hearing.TEXT  # fmt: skip
+    """How the driver's words reach the agent: as they are (``text``), as a recogniser makes them out in the
+    noise of the cabin (``cabin``), or as sound in it (``audio``)."""
 
     prompt: Annotated[
         PromptLength,
@@ -168,6 +199,17 @@ class Conditions:
     ] = ToldPolicy.NONE  # fmt: skip
     """Which rules the agent is told beside the driver's words: none, or those of the ``house``."""
 
+    attention: Annotated[
+        DriverAttention,
+        OneOf(DriverAttention, "attention"),
+        Words(
+            "Attention", "attention {}", "attention_{}", "Success by the driver's attention",
+            "Whether what the agent shows and says takes the driver's attention off the road (on) or not (off).",
+        ),
+    ] = DriverAttention.OFF  # fmt: skip
+    """Whether what the agent shows and says takes the driver's attention off the road, so that he brakes later and
+    keeps gaps worse (``on``), or not (``off``)."""
+
     @classmethod
     def named(cls, values: Mapping[str, object]) -> Conditions:
         """Conditions by name, with values as words or numbers.
@@ -183,6 +225,10 @@ class Conditions:
         if not self.interface.touches:
             return f"interface = {self.interface} cannot open"
         return f"see = {self.see} withholds" if Channel.SCREENSHOT in self.see.withheld else ""
+
+    def at(self, seed: int) -> Conditions:
+        """The conditions of the episode with a seed."""
+        return replace(self, make=self.make.at(seed))
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -245,7 +291,7 @@ class Condition:
 
     def told(self, value: object) -> str:
         """A value as the heading of a column."""
-        if isinstance(value, PromptLength):
+        if isinstance(value, OrFile):
             return value.words
         return str(value) if self.choices else f"{value:g} s"
 
@@ -256,6 +302,10 @@ class Condition:
             UserError: it has no such value.
         """
         kind, *annotations = get_args(self.kind)
+        if self.name == "make" and isinstance(given, str):
+            from automotive_cosim.cockpit.tree import resolved  # the whole cockpit, for a file of one's own
+
+            given = resolved(given)
         if self.choices:
             is_beside = any(isinstance(each, OneOf) and _fits(each.beside, given) for each in annotations)
             if given not in self.choices and not is_beside:

@@ -193,6 +193,9 @@ class Episode(JudgedSession):
         topic = topic_of(question, half.topics)
         return half.neutral if topic is None else topic.reply
 
+    def _is_topic(self, question: str) -> bool:
+        return topic_of(question, self.instance.half.topics) is not None
+
     def _remarks(self) -> tuple[str, ...]:
         start, now, steps = self.moments[0], self.moments[-1], len(self.steps)
         due = tuple(says for says in self.unsaid if says.is_due(start, now, steps))

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from automotive_cosim.cockpit.actions import check
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.cockpit.occupants import Seat
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import (
     BY_HAND,
     Action,
@@ -31,7 +32,8 @@ from automotive_cosim.contracts import (
     Reason,
     RoadNetwork,
 )
-from automotive_cosim.contracts.given import ToldPolicy
+from automotive_cosim.contracts.given import CarMake, Hearing, ToldPolicy
+from automotive_cosim.cosim.attention import Asked
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.episode.observer import Observer
@@ -44,8 +46,10 @@ from automotive_cosim.interface import trace
 from automotive_cosim.interface.controls import Shown, shown
 from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
-from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
+from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, asks_again, spoken_s
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
+from automotive_cosim.voice.cabin import driver_snr_db, is_understood, level_db
+from automotive_cosim.voice.table import SPOKEN, came_from, heard, sounding
 
 R = TypeVar("R")
 TakesTime: TypeAlias = Generator[float, None, R]
@@ -95,7 +99,9 @@ class Session:
     thought_s: float = 0.0
     """Simulated seconds that have passed since the agent last saw the screen."""
     heard: tuple[str, ...] = ()
-    """What the driver has said since the beginning."""
+    """What the driver has said since the beginning, as it has reached the agent."""
+    remarks: tuple[str, ...] = ()
+    """What the driver has said unasked since the beginning."""
     hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
     """Hash of the steps so far, computed when asked for."""
     _roads: Roads | None = field(default=None, repr=False)
@@ -152,11 +158,8 @@ class Session:
         if why := self._barred(action):
             yield from self.refusing(why)
             return
-        feedback, cost_s = self._answer(action) or (self._performed(action), 0.0)
-        said: tuple[str, ...] = ()
-        if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
-            said = (self._reply(action.text or ""),)
-            cost_s = spoken_s(action.text or "", *said)
+        feedback, cost_s, said = self._by_ear(action) or self._done(action)
+        self._ask(action, said)
         if action.action_type is ActionType.STATUS:
             self.declared, self.reason = action.goal_status, action.reason
         yield from self._proceed(action, feedback, cost_s, said)
@@ -211,8 +214,8 @@ class Session:
 
     @property
     def said(self) -> tuple[str, ...]:
-        """Every answer of the agent to the driver."""
-        actions = (step.action for step in self.steps)
+        """Every answer of the agent to the driver that he understood."""
+        actions = (step.action for step in self.steps if PARDON not in step.said)
         return tuple(each.text or "" for each in actions if each and each.action_type is ActionType.ANSWER)
 
     @property
@@ -240,6 +243,16 @@ class Session:
         if self.end is not None:
             raise RuntimeError(f"the episode is over ({self.end}); begin another one")
 
+    def _ask(self, action: Action, said: tuple[str, ...]) -> None:
+        """An action asks for the driver's attention: a touch for the eyes, spoken words for the mind."""
+        kind, text = action.action_type, action.text or ""
+        if kind in BY_HAND:
+            self.world.ask(Asked(self.world.moment.time_s, look_s=self.setup.action_cost_s))
+        elif kind is ActionType.ANSWER:
+            self.world.ask(Asked(self.world.moment.time_s, hear_s=spoken_s(text)))
+        elif said:
+            self.world.ask(Asked(self.world.moment.time_s, talk_s=spoken_s(text, *said)))
+
     def _barred(self, action: Action) -> str:
         """Why an agent with this interface cannot act so; empty if it can."""
         interface = self.setup.conditions.interface
@@ -248,6 +261,42 @@ class Session:
         if action.action_type in BY_HAND and not interface.touches:
             return "the screen cannot be touched here; call a function"
         return ""
+
+    def _done(self, action: Action) -> tuple[Feedback, float, tuple[str, ...]]:
+        """The feedback to an action, the seconds that it takes besides its own, and what the driver says to it."""
+        feedback, cost_s = self._answer(action) or (self._performed(action), 0.0)
+        if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
+            reply = self._reply(action.text or "")
+            return feedback, spoken_s(action.text or "", reply), (reply,)
+        is_slow = self._hears and action.action_type is ActionType.ANSWER
+        return feedback, spoken_s(action.text or "") if is_slow else cost_s, ()
+
+    def _by_ear(self, action: Action) -> tuple[Feedback, float, tuple[str, ...]] | None:
+        """As ``_done``, of words to a driver who does not understand them, or who shall repeat his own: nothing is
+        done."""
+        text = action.text or ""
+        if not self._hears or action.action_type not in (ActionType.ASK_DRIVER, ActionType.ANSWER):
+            return None
+        if not self._is_understood:
+            said: tuple[str, ...] = (PARDON,)
+        elif action.action_type is ActionType.ASK_DRIVER and asks_again(text) and not self._is_topic(text):
+            said = (self.goal, *self.remarks)
+        else:
+            return None
+        return Feedback(FeedbackCode.OK, ""), spoken_s(text, *said), said
+
+    @property
+    def _hears(self) -> bool:
+        return self.setup.conditions.hear.is_by_ear
+
+    @property
+    def _is_understood(self) -> bool:
+        """Whether the driver understands what the car says now."""
+        return not self._hears or is_understood(self.world.moment)
+
+    def _is_topic(self, question: str) -> bool:
+        """Whether the driver has an answer to it."""
+        return False
 
     def _performed(self, action: Action) -> Feedback:
         """The cockpit's feedback to an action; an agent without a list has no index to name."""
@@ -285,12 +334,15 @@ class Session:
     ) -> TakesTime[None]:
         """Lets the action's time pass, plus ``cost_s``; the driver says ``said`` and what he has to say besides."""
         feedback = yield from self._spend(action, feedback, cost_s)
-        said += self._remarks()
-        self.heard += said
+        remarks = self._remarks()
+        self.remarks += remarks
+        said += remarks
+        reached = reaching(said, self.setup, self.world.moment)
+        self.heard += reached
         begun_s = self.moments[0].time_s
         self.elements, self.observation = _seen(
             self.world,
-            self.goal,
+            self.observation.goal,
             self._channels(action),
             self.shown,
             begun_s,
@@ -298,10 +350,15 @@ class Session:
             self.heard,
             self.setup.conditions.policy,
             lean=self.setup.lean,
+            sounds=(*self.observation.sounds, *_sounds(said, self.setup, self.world.moment)),
         )
+        moment = self.world.moment
         self.steps.append(
-            trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s, said)
-        )
+            trace.Step(
+                len(self.steps), moment, self.elements, action, feedback, self.thought_s, said,
+                *((reached, level_db(moment)) if self._hears else ()),
+            )
+        )  # fmt: skip
         self.thought_s = 0.0
         end = self._ended()
         if end is not None:
@@ -354,12 +411,23 @@ def beginning(
     world: CoSimulation, goal: str, setup: SessionSetup, drive: Sequence[Moment], observer: Observer | None
 ) -> dict[str, Any]:
     """The fields of a session that begins now, on the screen that its conditions ask for."""
-    first = world.moment
-    world.cockpit.fit(setup.conditions.screen)
+    first, is_by_ear = world.moment, setup.conditions.hear.is_by_ear
+    (wish,) = reaching((goal,), setup, first)
+    reached: tuple[Any, ...] = ((wish,), level_db(first)) if is_by_ear else ()
+    make = setup.conditions.make
+    world.cockpit.fit(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
     elements, observation = _seen(
-        world, goal, setup.given, told, first.time_s, feedback, policy=setup.conditions.policy, lean=setup.lean
+        world,
+        wish,
+        setup.given,
+        told,
+        first.time_s,
+        feedback,
+        policy=setup.conditions.policy,
+        lean=setup.lean,
+        sounds=_sounds((goal,), setup, first),
     )
     return {
         "world": world,
@@ -371,8 +439,29 @@ def beginning(
         "moments": [first],
         "elements": elements,
         "observation": observation,
-        "steps": [trace.Step(0, first, elements, None, feedback)],
+        "steps": [trace.Step(0, first, elements, None, feedback, 0.0, (), *reached)],
     }
+
+
+def reaching(said: tuple[str, ...], setup: SessionSetup, moment: Moment) -> tuple[str, ...]:
+    """What reaches the agent of words that are said at a moment.
+
+    Raises:
+        InfrastructureError: they have not been recognised yet, and the extra ``voice`` is missing.
+    """
+    if not setup.conditions.hear.is_by_ear:
+        return said
+    if setup.conditions.hear is Hearing.AUDIO:
+        return tuple(came_from(text) + SPOKEN for text in said)
+    snr_db = driver_snr_db(level_db(moment))
+    return tuple(heard(text, snr_db) for text in said)
+
+
+def _sounds(said: tuple[str, ...], setup: SessionSetup, moment: Moment) -> tuple[bytes, ...]:
+    """The same as sound, for an agent that gets it."""
+    if setup.conditions.hear is not Hearing.AUDIO:
+        return ()
+    return tuple(sounding(text, driver_snr_db(level_db(moment))) for text in said)
 
 
 def _seen(
@@ -386,10 +475,11 @@ def _seen(
     policy: ToldPolicy = ToldPolicy.NONE,
     *,
     lean: bool = False,
+    sounds: tuple[bytes, ...] = (),
 ) -> tuple[tuple[Element, ...], Observation]:
     """The elements on the screen, and the agent's observation."""
     elements = () if lean else world.cockpit.elements()
-    seen = observe(world, goal, begun_s, elements, feedback, channels, said, policy)
+    seen = observe(world, goal, begun_s, elements, feedback, channels, said, policy, sounds)
     return elements, told.observation(seen, world.moment)
 
 

@@ -12,7 +12,9 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import DRIVE, HMI, MOTION
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import RoadNetwork
+from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.observer import Observer
@@ -25,6 +27,7 @@ from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import Instance, draw, speech
 from automotive_cosim.tasking.task import Half, Task
+from automotive_cosim.tasking.ways import units_in
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.fork import Simulations
@@ -168,8 +171,12 @@ class SituationFinder:
             content,
             held_out=self._spec.held_out,
             language=self._spec.conditions.language,
+            make=self._make(draws),
             redrawn=self._spec.redrawn,
         )
+
+    def _make(self, draws: Draws) -> CarMake:
+        return self._spec.conditions.make.at(draws.number)
 
     def _trips(self, half: Half, draws: Draws) -> tuple[Trip, ...]:
         ego = self.scenario.ego
@@ -188,7 +195,10 @@ class SituationFinder:
         weather = self.scenario.weather if start.weather is None else (WeatherAt(0.0, start.weather),)
         driver = start.driver or self.scenario.ego.driver
         reactions = draws.seed(Purpose.DRIVER)
-        plan = EgoPlan(trip, driver, reactions, weather, departure, parked=start.parked, wait_s=wait_s)
+        is_limited = self._spec.conditions.attention.is_limited
+        plan = EgoPlan(
+            trip, driver, reactions, weather, departure, parked=start.parked, wait_s=wait_s, attention=is_limited
+        )
         traffic = simulation.depart(plan)
         if plan.weather:
             return plan, traffic
@@ -202,6 +212,8 @@ class SituationFinder:
         signals = start.signals
         if self._spec.conditions.language is not Language.ENGLISH:
             signals = {HMI.LANGUAGE.path: str(self._spec.conditions.language), **signals}
+        make = make_named(self._make(draws))
+        signals = {**units_in(make, self.task), **signals}
         cockpit = Cockpit(
             traffic.network,
             rng=draws.rng(Purpose.CONTENT),
@@ -214,6 +226,7 @@ class SituationFinder:
             lacks=start.lacks,
             sensors=start.sensors,
             size=self._spec.conditions.screen,
+            make=make,
         )
         world = couple(
             traffic,
@@ -223,6 +236,7 @@ class SituationFinder:
             weather=plan.weather,
             departure=plan.start or self.scenario.start,
             links=self.scenario.connectivity,
+            attention=plan.attention,
         )
         if self._observer.looks:
             world.on_look = self._observer.looked

@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Ge, Gt, Le
 
+from automotive_cosim.contracts.given import Language
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.settings import EpisodeSettings
 from automotive_cosim.errors import UserError
@@ -49,12 +50,16 @@ class SessionSetup:
         """Refuses to blind the agent.
 
         Raises:
-            UserError: nothing of the screen is left that it can see, or it wants a screen that is not laid out.
+            UserError: nothing of the screen is left that it can see, it wants a screen that is not laid out, or
+                there is no voice in the driver's language.
         """
         if self.lean and self.channels & SCREEN:
             raise UserError("a lean session has no screen; leave screenshot and elements out of the channels")
         if self.conditions.see is See.NOTHING and not self.conditions.interface.calls:
             raise UserError("--see nothing leaves an agent at the screen nothing; give --interface functions too")
+        hear, language = self.conditions.hear, self.conditions.language
+        if hear.is_by_ear and language is not Language.ENGLISH:
+            raise UserError(f"--hear {hear} has no voice in {language.words}; give --language en, or --hear text")
         if self.channels & SCREEN and not self.given & SCREEN and not self.conditions.interface.calls:
             (only,) = self.channels & SCREEN
             raise UserError(

@@ -98,7 +98,9 @@ _XML = f"{_PACKED}; {ELEMENTS:,} elements, {_mb(TAG_BYTES)} a tag, no document t
 _TREE = f"{_PACKED}; {KEPT_ELEMENTS:,} elements, {_mb(TAG_BYTES)} a tag, no document type"
 
 READERS = (
-    _BoundedReader("TOML (scenario, plan, rules, space) and scripts of actions", "formats.files", _mb(TEXT_BYTES)),
+    _BoundedReader(
+        "TOML (scenario, plan, rules, space, make) and scripts of actions", "formats.files", _mb(TEXT_BYTES)
+    ),
     _BoundedReader("patterns in them, of tasks and streets", "formats.words", f"{PATTERN} characters"),
     _BoundedReader(
         "tasks in TOML",

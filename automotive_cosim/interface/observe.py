@@ -22,6 +22,7 @@ def observe(
     channels: frozenset[Channel] = ALL,
     said: tuple[str, ...] = (),
     policy: ToldPolicy = ToldPolicy.NONE,
+    sounds: tuple[bytes, ...] = (),
 ) -> Observation:
     """An agent's observation of the present moment.
 
@@ -31,6 +32,7 @@ def observe(
         elements: the accessibility elements of the present screen.
         feedback: the result of the last action.
         said: what the driver has said since the hand-over.
+        sounds: the wish and what was said since, as WAV files.
     """
     moment = world.moment
     return Observation(
@@ -48,6 +50,7 @@ def observe(
         if Channel.CONTEXT in channels
         else None,
         policy=told(policy),
+        sounds=sounds,
     )
 
 

@@ -37,6 +37,10 @@ class Step:
     """Simulated seconds that the agent took to answer, before the action."""
     said: tuple[str, ...] = ()
     """What the driver said meanwhile."""
+    heard: tuple[str, ...] | None = None
+    """What of it reached the agent, the wish included; None where words are text."""
+    cabin_db: float | None = None
+    """How loud the cabin is, dB(A); None as above."""
 
     @property
     def state(self) -> Json:
@@ -63,7 +67,10 @@ class Step:
             "connectivity": plain(moment.connectivity),
             "context": moment.context.text(),
             "events": [plain(event) for event in moment.events],
-        } | ({SAID: list(self.said)} if self.said else {})
+            **({SAID: list(self.said)} if self.said else {}),
+            **({} if self.heard is None else {"heard": list(self.heard), "cabin_db": self.cabin_db}),
+            **({} if moment.awareness is None else {"awareness": moment.awareness}),
+        }
 
 
 def digests(step: Json) -> Json:

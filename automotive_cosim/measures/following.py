@@ -10,6 +10,18 @@ from automotive_cosim.measures.formulas import gap_time_s, mdrac_mps2, time_expo
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS, Thresholds
 
 
+def is_near(state: DrivingState) -> bool:
+    """Whether the car is near a collision with the one in front: seconds away, and only hard braking avoids it.
+
+    Without the braking every gentle stop in a queue counts: who brakes from v with a is v / 2a from a collision.
+    """
+    leader = state.around.leader
+    if leader is None or leader.time_to_collision_s is None:
+        return False
+    is_soon = leader.time_to_collision_s < DEFAULT_THRESHOLDS.ttc_s
+    return is_soon and (leader.drac_mps2 or 0.0) >= DEFAULT_THRESHOLDS.drac_mps2
+
+
 @dataclass(frozen=True, slots=True)
 class FollowingFigures:
     """The most critical values of a drive, and for how long it was critical. None without such a vehicle."""

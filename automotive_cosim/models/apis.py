@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.errors import ModelError
 from automotive_cosim.models.base import ChatMessage, ModelReply, ToolCall
 
 MOST_TOKENS = 10**9
@@ -103,7 +104,11 @@ class Chat:
         if not message.pictures:
             return {"role": message.role, "content": message.text}
         parts: list[Json] = [{"type": "text", "text": message.text}]
-        parts += [{"type": "image_url", "image_url": {"url": _data_url(picture)}} for picture in message.pictures]
+        for each in message.pictures:
+            if is_sound(each):
+                parts.append({"type": "input_audio", "input_audio": {"data": _encoded(each), "format": "wav"}})
+            else:
+                parts.append({"type": "image_url", "image_url": {"url": _data_url(each)}})
         return {"role": message.role, "content": parts}
 
 
@@ -295,7 +300,12 @@ class Gemini:
                 "parts": [
                     {"text": message.text},
                     *(
-                        {"inlineData": {"mimeType": "image/png", "data": _base64(each)}}
+                        {
+                            "inlineData": {
+                                "mimeType": "audio/wav" if is_sound(each) else "image/png",
+                                "data": _encoded(each),
+                            }
+                        }
                         for each in message.pictures
                     ),
                 ],
@@ -447,8 +457,19 @@ def _text(content: object, *, is_thought: bool = False) -> str:
 _THOUGHT = re.compile("think|thought|reason")
 
 
+def is_sound(data: bytes) -> bool:
+    """Whether it is a WAV file, and no picture."""
+    return data.startswith(b"RIFF")
+
+
 def _base64(picture: bytes) -> str:
-    return base64.b64encode(picture).decode()
+    if is_sound(picture):
+        raise ModelError("this provider takes no sound; choose another, or --hear cabin")
+    return _encoded(picture)
+
+
+def _encoded(data: bytes) -> str:
+    return base64.b64encode(data).decode()
 
 
 def _data_url(picture: bytes) -> str:

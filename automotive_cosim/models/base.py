@@ -40,7 +40,7 @@ class ChatMessage:
     """``"system"``, ``"user"``, ``"assistant"`` or, of a call's result, ``"tool"``."""
     text: str
     pictures: tuple[bytes, ...] = ()
-    """PNG files, in the order in which the text mentions them."""
+    """PNG files, in the order in which the text mentions them; before them WAV files, if words came as sound."""
     calls: tuple[ToolCall, ...] = ()
     """What the assistant calls."""
     call_id: str = ""

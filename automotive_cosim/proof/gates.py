@@ -3,6 +3,7 @@
 | gate | what must be true |
 |---|---|
 | oracle | every reference solution succeeds by public actions, within the budget and 70 % of the deadline |
+| makes | the first of them succeeds in the cockpit of every other make too, by its way there |
 | start | the goal does not hold at the hand-over, and the context does not leave the deciding rule to a query |
 | world | weather, speed, lamps and cabin are such as the place has at that date and hour |
 | wording | each phrasing to be asked about says that one of several is meant |
@@ -59,6 +60,7 @@ from automotive_cosim.contracts import (
     GoalStatus,
     Observation,
 )
+from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode, replayed
@@ -121,6 +123,13 @@ def oracle(ground: Ground) -> Wrong:
             yield f"solution {number}: {played.why}"
         elif played.seconds > PACE * ground.half.deadline.seconds:
             yield f"solution {number} takes {played.seconds:.0f} s of {ground.half.deadline.seconds:g} s"
+
+
+def makes(ground: Ground) -> Wrong:
+    """Plays the reference solution in every other make."""
+    for make in CarMake:
+        if make not in (CarMake.HOME, CarMake.DRAWN) and not (played := ground.in_make(make)).success:
+            yield f"{make}: {played.why}"
 
 
 def start(ground: Ground) -> Wrong:

@@ -10,12 +10,16 @@ from typing import Any
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.cockpit.actions import perform
+from automotive_cosim.cockpit.signals import named
 from automotive_cosim.cockpit.state import CommandRecord
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
+from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.session import Actor, play
-from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.situation import HandOver, SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import ALL, Channel
@@ -24,6 +28,7 @@ from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.moves import Move, Tap
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
+from automotive_cosim.tasking.ways import units_in
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.future import SharedFuture
 
@@ -155,6 +160,21 @@ class Ground:
     def reference(self) -> Played:
         """The episode of the reference solution."""
         return self.play(_Noting(self.oracle(), self._begun))
+
+    def in_make(self, make: CarMake) -> Played:
+        """The episode of the reference solution in the cockpit of another make, which stood there all along."""
+        episode, units = self.episode, units_in(make_named(make), self.task)
+        instance, world = replace(self.instance, make=make), episode.world.branch()
+        for path, unit in {**units, **self.half.start.signals}.items():
+            if path in units:
+                world.cockpit.signals[named(path)] = unit
+        car = world.cockpit
+        world.moment = replace(world.moment, signals=car.signals.snapshot(), commands=car.commands())
+        there = HandOver(instance, world, episode.drive, episode.scenario, episode.traffic_seed)
+        setup = replace(SETUP, conditions=Conditions(make=make))
+        oracle = Oracle()
+        oracle.brief(instance)
+        return finish(Episode.take_over(there, setup), oracle)
 
     @property
     def move_of_action(self) -> tuple[int | None, ...]:

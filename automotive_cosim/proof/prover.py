@@ -21,6 +21,7 @@ from automotive_cosim.traffic.fork import Simulations
 
 GATES = (
     "oracle",
+    "makes",
     "start",
     "world",
     "wording",
@@ -162,7 +163,7 @@ class Prover:
         right = ground.reference
         found.oracle_steps[half] = len(right.actions)
         found.traces[half] = right.trace_sha256
-        for gate in ("oracle", "start", "world", "wording", "slip", "prefix", "late", "random", "effect"):
+        for gate in ("oracle", "makes", "start", "world", "wording", "slip", "prefix", "late", "random", "effect"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
         for gate in ("undone", "near", "coupled", "uncoupled", "optional", "knowable", "lawful"):

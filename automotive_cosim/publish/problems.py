@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from automotive_cosim.episode.conditions import TABLE, Conditions
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.formats.words import shown
 from automotive_cosim.run.trial_row import TrialRow
@@ -47,11 +48,19 @@ def differences(
         expected: what it should be, as JSON.
         source: where the expected values come from.
     """
+    found = _of_today(found)
     for name in names:
         steps = _first(found.get(name), expected.get(name), (name,))
         if steps is not None:
             told = shown(_at(found, steps)), shown(_at(expected, steps))
             yield Problem(file, f"{where} {dotted(steps)}".strip(), f"is {told[0]}, but {told[1]} by {source}")
+
+
+def _of_today(found: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A plan or a row with every condition: what was run before there was one was run at its default."""
+    if isinstance(row := found.get("conditions"), dict):
+        return {**found, "conditions": Conditions().as_json() | row}
+    return {each.name: [each.default] for each in TABLE} | dict(found)
 
 
 def _first(one: Any, other: Any, steps: tuple[str | int, ...]) -> tuple[str | int, ...] | None:

@@ -51,7 +51,7 @@ def sheet(tiles: Sequence[SheetTile], columns: int, width: int = 400) -> Image.I
 
 def pictures(cockpit: Cockpit) -> Iterator[tuple[str, Image.Image]]:
     """Name and picture at full size of every screen, each first by day and then by night."""
-    for screen, light in product(pages(), HMI.DAY_NIGHT.allowed):
+    for screen, light in product(dict.fromkeys((*pages(), *cockpit.state.make.screens)), HMI.DAY_NIGHT.allowed):
         shown = cockpit.copy()
         shown.inject(HMI.DAY_NIGHT.path, light)
         shown.visit(screen)

@@ -90,6 +90,7 @@ def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:
     panels: list[tuple[float, Callable[[Axes], None]]] = [
         (SPEED_IN, lambda axes: _speeds(axes, timeline)),
         (PANEL_IN, lambda axes: _gaps(axes, timeline)),
+        *([(LAMPS_IN, lambda axes: _awareness(axes, timeline))] if "awareness" in timeline else []),
         (PANEL_IN, lambda axes: _sky(axes, timeline)),
         (LAMPS_IN, lambda axes: _lamps(axes, timeline)),
     ]
@@ -286,6 +287,14 @@ def _gaps(axes: Axes, timeline: Json) -> None:
     axes.set_yticks([0, 3, 10])
     axes.set_ylabel("s")
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, frameon=False, fontsize=7.5, borderpad=0)
+
+
+def _awareness(axes: Axes, timeline: Json) -> None:
+    """How much of the driver's attention is on the road."""
+    axes.fill_between(timeline["time_s"], timeline["awareness"], 1.0, step="pre", color=VERMILION, alpha=0.5)
+    axes.set_ylim(0, 1)
+    axes.set_yticks([0, 1])
+    axes.set_ylabel("aware")
 
 
 def _sky(axes: Axes, timeline: Json) -> None:

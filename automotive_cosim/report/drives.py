@@ -154,6 +154,7 @@ EFFECTS: tuple[tuple[str, Figure, str], ...] = (
         _per_hour(lambda row: row.baseline_harm.short_ttc_s if row.baseline_harm else 0.0),
         ".1f",
     ),
+    ("Attention lost s/h", _per_hour(lambda row: row.harm.unaware_s if row.harm else 0.0), ".0f"),
     ("Distraction s/h", _per_hour(lambda row: row.distraction_s), ".0f"),
     ("Steps/h", _per_hour(lambda row: row.steps), ".0f"),
     ("Model calls/h", _per_hour(lambda row: row.calls), ".0f"),

@@ -128,6 +128,8 @@ class JudgedDrive(JudgeInput):
     """Duration of the drive."""
     order: Order = Order.FULL
     """What the driver asked for; ``facts`` are those that count against who was told that."""
+    harmed_s: float = 0.0
+    """For how much longer than the do-nothing drive it was near a collision, where attention is limited."""
 
     def judgement(self) -> tuple[tuple[JudgedEvent, ...], tuple[JudgedAct, ...], Score]:
         """Events, acts and score by the current checks; their times are seconds since departure."""
@@ -142,7 +144,7 @@ class JudgedDrive(JudgeInput):
             self.untouched,
             order=self.order,
         )
-        return judged_since(judged, self.begun_s, self.seconds)
+        return judged_since(judged, self.begun_s, self.seconds, self.harmed_s)
 
     @classmethod
     def of(cls, session: DriveSession) -> JudgedDrive:
@@ -170,4 +172,5 @@ class JudgedDrive(JudgeInput):
             session.moments[0].time_s,
             session.seconds,
             order,
+            session.harmed_s,
         )

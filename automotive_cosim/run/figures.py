@@ -27,6 +27,7 @@ from automotive_cosim.cockpit.signals import ENERGY
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.contracts import ActionType, BoundingBox, EgoEnd
 from automotive_cosim.contracts.action import BY_HAND
+from automotive_cosim.cosim.attention import GLANCE_S, TASK_S, WORDS_PER_S
 from automotive_cosim.cosim.exposed import states_of
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.breaches import limit_at
@@ -100,9 +101,6 @@ def overspeed(moments: Sequence[Moment], until_s: float = inf) -> tuple[float, f
     return over_m, whole_s
 
 
-GLANCE_S, TASK_S = 2.0, 12.0
-WORDS_PER_S = 238 / 60
-"""Silent reading speed of adults (Brysbaert 2019, J. Mem. Lang. 109)."""
 MOVING_MPS = 0.1
 NOTICE = "status.notice"
 """Elements in which the screen shows texts by itself."""

@@ -27,6 +27,7 @@ import numpy as np
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, Alert, Observation, PullOver, Redraw, SlowDown
+from automotive_cosim.cosim.attention import Asked
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, spoken
@@ -55,6 +56,8 @@ class TrialFork:
     """Number of its moment."""
     given: int
     """Number of commands before it."""
+    asked: int
+    """How often something was asked of the driver before it."""
     tracker: Any
     """Of a drive, its events so far; None of a task."""
 
@@ -66,6 +69,8 @@ class ForkedAct:
     step: int
     time_s: float
     records: list[CommandRecord]
+    asked: tuple[Asked, ...]
+    """What it asked of the driver, where attention is limited."""
     acts: list[DriveAct]
     fork: TrialFork
 
@@ -122,14 +127,14 @@ class Forks(TrialObserver):
         self.untouched: tuple[Moment, ...] = ()
         """The do-nothing run from the beginning."""
         self._forks: list[TrialFork] = []
-        self._given = 0
+        self._given = self._asked = 0
         self._seen: dict[tuple[int, frozenset[int], int], list[Moment]] = {}
 
     def begun(self, session: Any, shot: Shot) -> None:
         """Forks at the beginning."""
         self.session = session
         self.moments = [session.moments[0]]
-        self._given = len(session.world.cockpit.given)
+        self._given, self._asked = len(session.world.cockpit.given), len(self._all_asked)
         self._fork()
 
     def moved(self, moment: Moment, cockpit: Any) -> None:
@@ -142,13 +147,15 @@ class Forks(TrialObserver):
         world = self.session.world
         copy = world.cockpit.copy()
         actions.perform(action, copy, self.session.elements)
-        if copy.given[len(world.cockpit.given) :] and len(self.acts) < MOST_ACTS:
+        tells = world.car.attention is not None and spoken(action, 0.0) is not None
+        if (tells or copy.given[len(world.cockpit.given) :]) and len(self.acts) < MOST_ACTS:
             self._fork()
 
     def stepped(self, shot: Shot) -> None:
         """Notes an act."""
         given = self.session.world.cockpit.given
         new, self._given = list(given[self._given :]), len(given)
+        asked, self._asked = self._all_asked[self._asked :], len(self._all_asked)
         action, step = shot.step.action, shot.step
         at_s = new[0].time_s if new else self.session.steps[-2].moment.time_s + step.thought_s
         said = None if action is None else spoken(action, at_s)
@@ -156,7 +163,7 @@ class Forks(TrialObserver):
         if acts and len(self.acts) == MOST_ACTS:
             self.more += 1
         elif acts:
-            self.acts.append(ForkedAct(step.number, at_s, new, acts, self._forks[-1]))
+            self.acts.append(ForkedAct(step.number, at_s, new, asked, acts, self._forks[-1]))
 
     def finished(self, row: Any, told: Any) -> None:
         """Keeps what the judge needs beside the trial itself."""
@@ -173,8 +180,14 @@ class Forks(TrialObserver):
         return isinstance(self.session, DriveSession)
 
     def commands(self, steps: Collection[int]) -> set[int]:
-        """What some steps commanded, by identity."""
-        return {id(record) for act in self.acts if act.step in steps for record in act.records}
+        """What some steps commanded and asked of the driver, by identity."""
+        return {id(each) for act in self.acts if act.step in steps for each in (*act.records, *act.asked)}
+
+    @property
+    def _all_asked(self) -> tuple[Asked, ...]:
+        """All that was asked of the driver, where attention is limited."""
+        attention = self.session.world.car.attention
+        return () if attention is None else attention.asked
 
     def both(self, left: Sequence[ForkedAct], draw: int) -> tuple[list[Moment], list[Moment]]:
         """What was driven from the fork of the first of some acts on, with and without them; draw 0 is the recorded
@@ -212,6 +225,7 @@ class Forks(TrialObserver):
         """Drives on from a fork without some acts, second by second; gives nothing while others may go on."""
         gone = self.commands(without)
         left: list[CommandRecord] = list(self.session.world.cockpit.given[fork.given :])
+        asked = list(self._all_asked[fork.asked :])
         with closing(fork.world.branch()) as world:
             if draw:
                 seed = np.random.default_rng((self._seed, fork.at, draw)).integers(SEED_RANGE)
@@ -225,6 +239,9 @@ class Forks(TrialObserver):
                         world.give(record)
                     for _ in range(_draws(record) if id(record) in gone else 0):
                         world.traffic.request(Redraw())
+                while asked and asked[0].time_s <= before.time_s + ROUNDING_S:
+                    if id(what := asked.pop(0)) not in gone:
+                        world.ask(what)
                 tick_s = round(now.time_s - before.time_s, 6)
                 world.traffic.start(min(TICK_S, tick_s))
                 yield ()
@@ -233,7 +250,7 @@ class Forks(TrialObserver):
     def _fork(self) -> None:
         world, tracker = self.session.world.branch(), deepcopy(getattr(self.session, "tracker", None))
         self._ends.callback(world.close)
-        self._forks.append(TrialFork(world, len(self.moments) - 1, len(self.session.world.cockpit.given), tracker))
+        self._forks.append(TrialFork(world, len(self.moments) - 1, self._given, self._asked, tracker))
 
 
 def together(drives: Sequence[Iterator[Sequence[Moment]]]) -> list[list[Moment]]:

@@ -14,6 +14,7 @@ from annotated_types import Ge, Le
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, Agent, AgentSettings, is_remote, make_agent
+from automotive_cosim.cockpit import tree
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Clock
@@ -82,7 +83,7 @@ class PlannedTrial:
             "agent": agent,
             "model": model if agent in MODELLED or agent == HUMAN else NO_MODEL,
             "seed": self.seed,
-            "conditions": self.conditions,
+            "conditions": self.conditions.at(self.seed),
             "repeat": self.repeat + repeat,
         }
         if self.drive:
@@ -372,14 +373,17 @@ def read_plan(path: Path) -> dict[str, Any]:
 
 
 def with_files(values: dict[str, Any]) -> dict[str, Any]:
-    """The values with each file of instructions named by its SHA-256 too; its path is from the working folder.
+    """The values with each file of instructions, or with a make, named by its SHA-256 too; its path is from the
+    working folder.
 
     Raises:
         UserError: such a file cannot be used.
     """
-    if not isinstance(given := values.get("prompt"), list):
-        return values
-    return values | {"prompt": [resolved(each) if isinstance(each, str) else each for each in given]}
+    named = {}
+    for name, read in (("prompt", resolved), ("make", tree.resolved)):
+        if isinstance(given := values.get(name), list):
+            named[name] = [read(each) if isinstance(each, str) else each for each in given]
+    return values | named
 
 
 def make_plan(values: Mapping[str, Any]) -> Plan:

@@ -73,6 +73,7 @@ def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | N
     entries = [
         _entry(moments[0], zero_s, "departure", "departs on"),
         _entry(steps[0].moment, zero_s, "hand_over", "hand-over to the agent on"),
+        *_heard(steps[0], zero_s),
         *_goal(goal_s),
         *_actions(steps, zero_s),
         *_roadside(moments, zero_s),
@@ -103,10 +104,18 @@ def _actions(steps: Sequence[Step], zero_s: float) -> Iterable[TimelineEntry]:
             yield TimelineEntry(at_s, "action", words)
         for text in step.said:
             yield TimelineEntry(round(step.moment.time_s - zero_s, 2), "said", f"the driver says “{text}”")
+        yield from _heard(step, zero_s)
         for alert in given:
             yield TimelineEntry(at_s, "alert", f"alert to the driver: {alert['kind']} ({alert['severity']})")
         if action is not None and action.action_type is ActionType.STATUS:
             yield TimelineEntry(at_s, "declared", words)
+
+
+def _heard(step: Step, zero_s: float) -> Iterable[TimelineEntry]:
+    """What reached the agent of what was said, if it hears."""
+    for text in step.heard or ():
+        words = f"the agent hears “{text}” in {step.cabin_db:.0f} dB(A)"
+        yield TimelineEntry(round(step.moment.time_s - zero_s, 2), "said", words)
 
 
 def _roadside(moments: Sequence[Moment], zero_s: float) -> Iterable[TimelineEntry]:

@@ -376,7 +376,7 @@ def _played(
         for observer in observers:
             observer.stepped(shot)
 
-    agent.reset(session.goal)
+    agent.reset(session.observation.goal)
     if isinstance(agent, Privileged) and isinstance(session, Episode):
         agent.brief(session.instance, drawn=session.world.cockpit.drawn, branch=session.branch)
     first = Shot(session, session.steps[0])

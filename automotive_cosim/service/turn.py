@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from dataclasses import dataclass
 
 from automotive_cosim.agents.marks import listed, png, road
@@ -53,6 +54,8 @@ class EpisodeTurn:
         }
         if seen.on_watch:
             told["on_watch"] = True
+        if seen.sounds:
+            told["sounds"] = [base64.b64encode(each).decode() for each in seen.sounds]
         if seen.elements is not None:
             told["elements"] = [listing(index, element) for index, element in listed(seen.elements)]
         for name in ("vehicle", "connectivity", "gps"):

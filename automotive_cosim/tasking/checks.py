@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
-from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA, Signal
 from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.dialogue import Topic, questions
@@ -394,6 +394,46 @@ class AskedFirst:
         return f"the driver asked once, and first, about {self.topic.name}"
 
 
+QUIETING = frozenset(
+    each.path
+    for each in (
+        CABIN.DRIVER_WINDOW,
+        CABIN.PASSENGER_WINDOW,
+        CABIN.REAR_LEFT_WINDOW,
+        CABIN.REAR_RIGHT_WINDOW,
+        CABIN.SUNROOF,
+        HVAC.FAN_SPEED,
+        MEDIA.ACTION,
+        MEDIA.VOLUME,
+        MEDIA.MUTED,
+    )
+)
+"""What makes the cabin quieter, and may be changed before a question."""
+
+
+@dataclass(frozen=True, slots=True)
+class AskedBack:
+    """The driver was asked about it, or to say it again, before anything but the noise was changed."""
+
+    topic: Topic
+
+    @property
+    def writes(self) -> frozenset[str]:
+        return frozenset()  # it may be asked again: the answer, too, has to be heard
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether the first moment after such a question is as the start but for the noise."""
+        for count, asked in enumerate(questions(start, now), start=1):
+            if self.topic.fits(asked["text"]):
+                then = next(moment for moment in trace if len(questions(start, moment)) >= count)
+                changed = {key for key, value in then.commands.items() if value != start.commands.get(key)}
+                return changed <= QUIETING | {"questions"}
+        return False
+
+    def __str__(self) -> str:
+        return f"the driver asked back about {self.topic.name}, before anything but the noise was changed"
+
+
 @dataclass(frozen=True, slots=True)
 class NotAsked:
     """The driver was not asked anything: what he wants can be found out."""
@@ -411,7 +451,7 @@ class NotAsked:
 
 def asked_in(check: Check) -> Iterator[Topic]:
     """The topics of a goal that the driver has to be asked about."""
-    if isinstance(check, AskedFirst):
+    if isinstance(check, AskedFirst | AskedBack):
         yield check.topic
     for part in getattr(check, "checks", ()):
         yield from asked_in(part)

@@ -19,6 +19,8 @@ from automotive_cosim.tasking.triggers import TriggerCondition
 
 NEUTRAL = "You know as much as I do. Do as you think best."
 """The answer to a question that the task has no topic for."""
+PARDON = "What did you say?"
+"""What the driver says if he did not understand the car."""
 LOOK_FIRST = "The calendar and the memos may say it; what the car doesn't know, ask me."
 """What the driver adds to a wish of the suite ``clarify``, which is in English alone: where one may look."""
 ROUNDING_S = 1e-9
@@ -30,6 +32,12 @@ JAPANESE_PER_WORD = 2
 _JAPANESE = "\u3005-\u3007\u3040-\u30ff\u4e00-\u9fff"
 _TOKEN = re.compile(rf"[{_JAPANESE}]|[^\W{_JAPANESE}]+")
 """A word, or one character of Japanese."""
+
+
+_AGAIN = re.compile(
+    r"\b(repeat|again|pardon|once more|say that|did you say)\b"
+    r"|(not|n't) (hear|catch|understand|get) (you|that|it)\b"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +149,11 @@ def topic_of(question: str, topics: Sequence[Topic]) -> Topic | None:
     """The topic that a question fits best, the first of several that fit equally; None if it fits none."""
     best = max(topics, key=lambda topic: topic.fits(question), default=None)
     return best if best is not None and best.fits(question) else None
+
+
+def asks_again(question: str) -> bool:
+    """Whether the driver is asked to repeat what he has said, in English."""
+    return _AGAIN.search(question.casefold().replace("’", "'")) is not None
 
 
 def questions(start: Moment, now: Moment) -> list[dict[str, Any]]:

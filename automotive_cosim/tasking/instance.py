@@ -9,7 +9,10 @@ from functools import cached_property
 from typing import Any
 
 from automotive_cosim.cockpit.language import Language, said, word
+from automotive_cosim.cockpit.make import HOME, Make
 from automotive_cosim.cockpit.occupants import Seat
+from automotive_cosim.cockpit.tree import make_named
+from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.text import Quantity
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.tasking.dialogue import LOOK_FIRST, Says, Topic
@@ -19,6 +22,7 @@ from automotive_cosim.tasking.parameters import KEEP, Choices, FromCockpit, Para
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.task import Half, Task
+from automotive_cosim.tasking.ways import in_make, units_in
 
 
 @dataclass(frozen=True)
@@ -35,12 +39,18 @@ class Instance:
     """The sign or law that it rests on in another network than its own (``binding``); empty in its own."""
     language: Language = Language.ENGLISH
     """What the driver speaks, and the car shows."""
+    make: CarMake = CarMake.HOME
+    """Whose cockpit the car has."""
 
     @cached_property
     def half(self) -> Half:
         """The half, with the parameters filled in."""
-        half = bind(self.task.half(self.half_name), self.parameters)
+        half, make = bind(self.task.half(self.half_name), self.parameters), make_named(self.make)
         half = replace(half, rule=self.rule) if self.rule else half
+        if make is not HOME:
+            half = replace(half, moves=in_make(half.moves, make, units_in(make, self.task)))
+        if make is not HOME or self.language is not Language.ENGLISH:
+            half = _as_shown(half, self.language, make)
         return half if self.language is Language.ENGLISH else _in_language(half, speech(self.task, self.language))
 
     @property
@@ -57,6 +67,7 @@ def draw(
     *,
     held_out: bool = False,
     language: Language = Language.ENGLISH,
+    make: CarMake = CarMake.HOME,
     redrawn: int = 0,
 ) -> Instance:
     """Draws phrasing and parameters, the same for both halves of a task.
@@ -72,6 +83,7 @@ def draw(
             kind in angle brackets.
         held_out: whether to use the held-out phrasing, whatever is drawn; the parameters stay the same.
         language: what the driver speaks; the draw is the same in each.
+        make: whose cockpit the car has; so is it there.
         redrawn: how many phrasings further in the task's order, with the same parameters.
 
     Raises:
@@ -92,7 +104,9 @@ def draw(
     if held_out:
         phrasing = phrasings - 1
     goal = phrased(task, half_name, parameters, language)[phrasing]
-    return Instance(task, half_name, goal, parameters, held_out=phrasing == phrasings - 1, language=language)
+    return Instance(
+        task, half_name, goal, parameters, held_out=phrasing == phrasings - 1, language=language, make=make
+    )
 
 
 def phrased(
@@ -127,19 +141,34 @@ def speech(task: Task, language: Language) -> Speech:
     return task.spoken[language]
 
 
+def _as_shown(half: Half, language: Language, make: Make) -> Half:
+    """The half with what a finger looks for on the screens in that language and the make's words."""
+
+    def told(text: str) -> str:
+        """A message, or a name and a value."""
+        return ": ".join(word(each, language, make) for each in text.split(": "))
+
+    def change(part: Any) -> Any:
+        match part:
+            case Tap(text=text):
+                return replace(part, text=told(text))
+            case TapUntil(text=text):
+                shown = told(text)
+                return replace(part, text=shown if shown != text else said(Quantity(text), language))
+        return KEEP
+
+    shown: Half = rebuilt(half, change)
+    return shown
+
+
 def _in_language(half: Half, own: Speech) -> Half:
-    """The half with what is said, and what a finger looks for on the screens, in that language."""
+    """The half with what is said in that language."""
     heard = (*(says.text for says in half.says), *(topic.reply for topic in half.topics))
 
     def change(part: Any) -> Any:
         match part:
             case Says(text) | Consult(text) | Inform(text):
                 return replace(part, text=own.lines.said(text))
-            case Tap(text=text):
-                return replace(part, text=word(text, own.language))
-            case TapUntil(text=text):
-                shown = word(text, own.language)
-                return replace(part, text=shown if shown != text else said(Quantity(text), own.language))
             case Hear(text):
                 return replace(part, text=next(own.lines.said(line) for line in heard if text in line))
             case Topic():

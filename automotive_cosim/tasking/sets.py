@@ -19,6 +19,8 @@ class Suite(StrEnum):
     SPEED = "speed"
     """Pairs about which speed limit holds: by country, weather, hour, and what is signed ahead. They are families,
     said in the same words in many places: evidence for rows of a protocol rather than new kinds of wishes."""
+    VOICE = "voice"
+    """Pairs in which the cabin's sound decides, or who said it; they are run with ``--hear cabin``."""
 
     @property
     def max_steps(self) -> int:

@@ -85,6 +85,8 @@ class EgoPlan:
     brakes_early: bool = False
     """Whether the driver brakes early and gently for what stands ahead, as attentive people do. SUMO's model brakes
     as late as it can: from 50 km/h at 21 m."""
+    attention: bool = False
+    """Whether the driver's attention can be elsewhere (``Aware``); by default it never is."""
     settles_s: float = 0.0
     """Over how many seconds the road takes on the grip of other weather; by default at once."""
 

@@ -20,6 +20,7 @@ from automotive_cosim.contracts import (
     Alert,
     AlertKind,
     Answer,
+    Aware,
     Cruise,
     DrivingState,
     EgoEnd,
@@ -255,6 +256,9 @@ class Driver:
                 return Answer(True, "")
             case Redraw():
                 self._drawn()
+                return Answer(True, "")
+            case Aware(awareness):
+                self.pedals.set_awareness(awareness)
                 return Answer(True, "")
             case Hazards(on):
                 self.hazard_lights = on

@@ -36,6 +36,10 @@ class Pedals(Protocol):
         """How unevenly the speed is kept, 0 to 1."""
         ...
 
+    def set_awareness(self, awareness: float) -> None:
+        """How much of the driver's attention is on the road, 0.1 to 1."""
+        ...
+
     def set_overtaking(self, readiness: float) -> None:
         """How readily lanes are changed to go faster; 0 is never."""
         ...

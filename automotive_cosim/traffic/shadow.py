@@ -17,6 +17,7 @@ from weakref import WeakSet
 
 from automotive_cosim.contracts import (
     Answer,
+    Aware,
     DrivingState,
     RoadNetwork,
     RoadRequest,
@@ -153,11 +154,13 @@ class Shadow:
         return Advance(states, events)
 
     def request(self, request: RoadRequest) -> Answer:
-        """See ``Traffic.request``.
+        """See ``Traffic.request``. What the driver was aware of is in the steps that the other has driven.
 
         Raises:
             RuntimeError: the other is ahead already; make the request before it advances.
         """
+        if self._ahead and isinstance(request, Aware):
+            return Answer(True, "")
         return self._now().request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:

@@ -15,7 +15,7 @@ from automotive_cosim.traffic.pedals import RefusedError
 from automotive_cosim.traffic.road_weather import G_MPS2
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
-from automotive_cosim.traffic.sumo import HAZARD_SIGNAL, SPEED_GAIN, STRATEGIC, LibSumo
+from automotive_cosim.traffic.sumo import AWARENESS, HAZARD_SIGNAL, SPEED_GAIN, STRATEGIC, LibSumo
 
 PARKING = 1
 """SUMO's stop flag: off the lane, so that other vehicles can pass."""
@@ -107,6 +107,10 @@ class SumoPedals:
 
     def set_imperfection(self, imperfection: float) -> None:
         self._sumo.set_imperfection(self._ego, imperfection)
+
+    def set_awareness(self, awareness: float) -> None:
+        """See ``pedals.Pedals``; SUMO has its driver misjudge gaps and closing speeds accordingly."""
+        self._sumo.set_parameter(self._ego, AWARENESS, f"{awareness:g}")
 
     def set_overtaking(self, readiness: float) -> None:
         self._sumo.set_parameter(self._ego, SPEED_GAIN, f"{readiness:g}")

@@ -42,6 +42,9 @@ STRATEGIC = "laneChangeModel.lcStrategic"
 SPEED_GAIN = "laneChangeModel.lcSpeedGain"
 """How readily a driver changes lanes to go faster."""
 
+AWARENESS, PERCEPTION_ERROR = "device.driverstate.awareness", "device.driverstate.errorState"
+"""Of a driver whose type has the device ``driverstate``, which no running vehicle can be given."""
+
 Manner: TypeAlias = tuple[float, str, str]
 """A driver's speed factor, place in the lane, and ``STRATEGIC``."""
 

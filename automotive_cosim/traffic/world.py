@@ -43,11 +43,13 @@ from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import (
     AVERAGED,
+    AWARENESS,
     BLUE_LIGHT,
     EGO,
     EGO_TYPE,
     LIMITS,
     NOW,
+    PERCEPTION_ERROR,
     SPEED_GAIN,
     DesiredSpeed,
     LibSumo,
@@ -243,7 +245,7 @@ class World:
             raise ScenarioError(f"the traffic has a vehicle {car!r} already")
         round_ = planned(self.always_open, plan.trip, plan.onward) if plan.onward else None
         edges = round_.first if round_ else self._trip_edges(plan.trip)
-        self._add_car(car, edges, profile(plan.driver), plan.trip, parked=plan.parked)
+        self._add_car(car, edges, profile(plan.driver), plan.trip, parked=plan.parked, attention=plan.attention)
         if plan.emission_class:
             try:
                 sumo.vehicle.setEmissionClass(car, plan.emission_class)
@@ -269,6 +271,11 @@ class World:
             ScenarioError: there is no such vehicle on a road for cars.
         """
         sumo, edges = self._sumo, self.network.edges
+        if plan.attention:
+            raise ScenarioError(
+                f"vehicle {car!r} drives already, and SUMO gives a driver's state only to cars that set out; take "
+                "--attention off"
+            )
         if car in self.roads or car not in sumo.vehicle_ids() or sumo.edge_of(car) not in edges:
             raise ScenarioError(f"vehicle {car!r} is on no road for cars, or has a cockpit already")
         drives, base = sumo.vehicle, profile(plan.driver)
@@ -302,6 +309,12 @@ class World:
         """The drive of a car that has just entered the traffic."""
         coming = self._coming.pop(car)
         plan, edges, sumo = coming.plan, coming.edges, self._sumo
+        if plan.attention and not _heeds(sumo, car):
+            raise ScenarioError(
+                f"the ego of scenario {self._scenario.name!r} has a car-following model that does not heed SUMO's "
+                "driver state, so --attention on would change nothing; give its DEFAULT_VEHTYPE the carFollowModel "
+                "Krauss or IDM, or take --attention off"
+            )
         if sumo.route(car)[-1] != edges[-1]:  # a rerouter stands where it departs
             sumo.set_route(car, edges)
         now_s, is_first = sumo.time(), not self.roads
@@ -431,7 +444,7 @@ class World:
             )
 
     def _add_car(
-        self, car: str, edges: tuple[str, ...], driver: DriverProfile, trip: Trip, *, parked: bool
+        self, car: str, edges: tuple[str, ...], driver: DriverProfile, trip: Trip, *, parked: bool, attention: bool
     ) -> None:
         sumo = self._sumo
         of_its = EGO_TYPE if car == EGO else f"{EGO_TYPE}.{car}"
@@ -449,6 +462,8 @@ class World:
         kind.setSpeedDeviation(of_its, 0.0)
         kind.setActionStepLength(of_its, self.step_s)
         kind.setParameter(of_its, "has.rerouting.device", "false")
+        if attention:
+            kind.setParameter(of_its, "has.driverstate.device", "true")
         sumo.add_route(of_its, edges)
         if not parked and trip.from_m is not None:
             edge = self.network.edges[edges[0]]
@@ -652,6 +667,16 @@ class EgoRoad:
         if end is None and self._car in self._world.arrived:
             end = EgoEnd.ARRIVED
         return end, tuple(events)
+
+
+def _heeds(sumo: LibSumo, car: str) -> bool:
+    """Whether a car's model heeds its driver's state, that is follows otherwise with an error of perception."""
+    speeds: list[float] = []
+    for error in ("1", "0"):
+        sumo.set_parameter(car, AWARENESS, "1" if error == "0" else "0.5")
+        sumo.set_parameter(car, PERCEPTION_ERROR, error)
+        speeds.append(sumo.vehicle.getFollowSpeed(car, 20.0, 30.0, 10.0, 4.5))
+    return speeds[0] != speeds[1]
 
 
 def _similar(edge_id: str, known: Iterable[str]) -> str:

@@ -23,6 +23,7 @@ from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import (
     Around,
     Connectivity,
+    Direction,
     DrivingState,
     Element,
     FeedbackCode,
@@ -131,6 +132,10 @@ def walk(home: Cockpit) -> tuple[View, ...]:
     ahead = deque(found.values())
     while ahead:
         view = ahead.popleft()
+        further = view.cockpit.copy()  # a make's own screens lead on below, too
+        if further.screen in further.state.make.screens and _scrolled(further):
+            found[f"{view.name} further"] = View(f"{view.name} further", view.way, further)
+            ahead.append(found[f"{view.name} further"])
         for widget in view.cockpit.tree.walk():
             name = _leads_to(widget, view.cockpit)
             taken = getattr(widget, "selected", False) and not isinstance(widget.on_tap, Show)
@@ -142,6 +147,10 @@ def walk(home: Cockpit) -> tuple[View, ...]:
             found[name] = View(name, (*view.way, widget.key), there)
             ahead.append(found[name])
     return tuple(found.values())
+
+
+def _scrolled(cockpit: Cockpit) -> bool:
+    return cockpit.scroll(f"{cockpit.screen}.all", Direction.DOWN).code is FeedbackCode.OK
 
 
 def _leads_to(widget: Widget, here: Cockpit) -> str:

@@ -36,7 +36,7 @@ def draw(
 ) -> npt.NDArray[np.uint8]:
     side = round(SIZE * scale)
     scene = MapScene(Camera(0.0, 0.0, heading, 0.5), (0.0, 0.0, heading), route)
-    return np.asarray(mapdraw.draw(roads, scene, side, side, scale, palette is NIGHT))
+    return np.asarray(mapdraw.draw(roads, scene, side, side, scale, palette))
 
 
 def is_at(picture: npt.NDArray[np.uint8], x: float, y: float, colour: Colour) -> bool:
@@ -119,7 +119,7 @@ def test_traffic_and_other_ways_have_colours_of_their_own() -> None:
 
     def scene(**shown: object) -> npt.NDArray[np.uint8]:
         scene = MapScene(Camera(0.0, 0.0, 0.0, 0.5), **shown)  # type: ignore[arg-type]
-        return np.asarray(mapdraw.draw(roads, scene, SIZE, SIZE, 1.0, False))
+        return np.asarray(mapdraw.draw(roads, scene, SIZE, SIZE, 1.0, DAY))
 
     north, west = (EGO[0], EGO[1] - 130), (EGO[0] - 120, EGO[1] - 120)
     assert is_at(scene(alternatives=(("w", "unknown"),)), *west, DAY.alternative)
@@ -137,15 +137,15 @@ def test_a_picture_does_not_depend_on_what_was_drawn_before() -> None:
         MapScene(Camera(x, 2.0 * x, 2.0 * turn, 0.9), (x, 2.0 * x, 2.0 * turn))
         for x, turn in zip(np.arange(0.0, 60.0, 7.3).tolist(), (0, 0, 0, 1, 1, 90, 90, 0, 0), strict=True)
     ]
-    drawn = [mapdraw.draw(roads, scene, SIZE, 300, 1.0, True).tobytes() for scene in scenes]
+    drawn = [mapdraw.draw(roads, scene, SIZE, 300, 1.0, NIGHT).tobytes() for scene in scenes]
     for scene, picture in reversed(list(zip(scenes, drawn, strict=True))):
         mapdraw._sheet.cache_clear()
-        assert mapdraw.draw(roads, scene, SIZE, 300, 1.0, True).tobytes() == picture
+        assert mapdraw.draw(roads, scene, SIZE, 300, 1.0, NIGHT).tobytes() == picture
 
 
 def test_the_car_is_turned_on_a_map_with_north_up() -> None:
     scene = MapScene(Camera(0.0, 0.0, 0.0, 0.5, 0.5), (0.0, 0.0, 90.0))
-    picture = np.asarray(mapdraw.draw(RoadMap(network()), scene, SIZE, SIZE, 1.0, False))
+    picture = np.asarray(mapdraw.draw(RoadMap(network()), scene, SIZE, SIZE, 1.0, DAY))
     assert is_at(picture, SIZE // 2 + 10, SIZE // 2, DAY.accent)
     assert is_at(picture, SIZE // 2 - 18, SIZE // 2, DAY.land)
 
@@ -168,7 +168,7 @@ def test_from_further_away_there_are_no_buildings_and_no_specks() -> None:
     ground = (square(GroundKind.BUILDING, 50, 100, 200), square(GroundKind.WATER, -250, 100, 200))
     roads = RoadMap(network(ground=(*ground, square(GroundKind.GREEN, -50, 200, 8))))
     scene = MapScene(Camera(0.0, 0.0, 0.0, 2.8))
-    colours = set(mapdraw.draw(roads, scene, SIZE, SIZE, 1.0, False).get_flattened_data())
+    colours = set(mapdraw.draw(roads, scene, SIZE, SIZE, 1.0, DAY).get_flattened_data())
     assert DAY.water in colours
     assert colours.isdisjoint({DAY.building, DAY.green})
 

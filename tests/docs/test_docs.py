@@ -370,6 +370,9 @@ def test_pages_count_the_tasks_as_they_are():
     limits = len(CATALOGUE.of(Suite.LIMITS))
     reference = (TOP / "docs/reference/tasks.md").read_text("utf-8")
     assert f"has {limits} pairs about what a car cannot do" in reference
+    voice = Counter(task.id.split("_")[1] for task in CATALOGUE.of(Suite.VOICE))
+    assert f"has {voice.total()} pairs in which the cabin's sound decides" in reference
+    assert [f"`voice_{kind}_*` ({count})" in reference for kind, count in voice.items()] == [True] * 3
     clarify = len(CATALOGUE.of(Suite.CLARIFY))
     asking = sum("asking" in task.tags for task in standard)
     assert f"has {clarify} pairs about wishes that leave something open" in reference

@@ -30,6 +30,7 @@ from automotive_cosim.drives.order import ANSWERS, ordered
 from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.session import DriveSession
+from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watchers import READS, AlertOnWake, RulePerfect, Silent
@@ -449,6 +450,37 @@ def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(silent: tuple
         assert len(told[key]) == seconds, key
     assert len(told["wakes"]) == len(session.woken) > 0
     assert told["advice"] == []
+
+
+@pytest.mark.slow
+def test_attention_changes_nothing_by_itself_and_who_talks_and_flickers_takes_it(simulations: Simulations) -> None:
+    class Flickers(Silent):
+        def act(self, observation: Observation) -> Action:
+            self.turn = getattr(self, "turn", 0) + 1
+            if self.turn % 3 == 0:
+                return Action(ActionType.ANSWER, text="There is a nice place to eat on the left")
+            return (
+                Action(ActionType.CLICK, x=40, y=680) if self.turn % 3 == 1 else Action(ActionType.WAIT, seconds=2)
+            )
+
+    def driven(attention: str, actor: Actor) -> DriveSession:
+        settings, conditions = DriveSettings(minutes=1.5), Conditions.named({"attention": attention})
+        spec = DriveSpec(FAMILY, SEED, conditions, settings=settings)
+        with closing(spec.begin(simulations, READS)) as session:
+            play(session, actor)
+        return session
+
+    off, on = (driven(each, Silent()) for each in ("off", "on"))
+    assert off.trace_sha256 == on.trace_sha256
+    assert {moment.awareness for moment in off.moments} == {None}
+    first, second = driven("on", Flickers()), driven("on", Flickers())
+    assert first.trace_sha256 == second.trace_sha256
+    assert [m.driving for m in first.baseline_moments] == [m.driving for m in off.moments]
+    mine, baseline = first.harms
+    assert baseline.unaware_s == 0.0 < 10.0 < mine.unaware_s
+    assert min(timeline(first)["awareness"]) < 0.7
+    speeds = [[m.driving.speed_mps for m in each.moments] for each in (off, first, driven("off", Flickers()))]
+    assert speeds[0] == speeds[2] != speeds[1]
 
 
 @pytest.mark.slow

@@ -10,18 +10,21 @@ import pytest
 
 from automotive_cosim.cockpit.signals import ENERGY, HVAC, TYRE
 from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus
+from automotive_cosim.contracts.given import Hearing, Language
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.cosim.simulation import TICK_S
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Session, play
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource, SessionSetup
-from automotive_cosim.errors import ActionError, AgentError, NoRoomError, OutOfBudgetError
+from automotive_cosim.errors import ActionError, AgentError, NoRoomError, OutOfBudgetError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import sha256
-from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic, spoken_s
+from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, Says, Topic, spoken_s
 from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.voice.cabin import driver_snr_db, level_db
 
 SPEC = EpisodeSpec("hvac_fan_max", scenario="grid")
 BLIND = SessionSetup(frozenset({Channel.ELEMENTS}))
@@ -243,11 +246,11 @@ HOW = Topic("how strong", (("full",), ("gently",)), "Full blast.", ("fan",))
 def talk(simulations) -> Iterator[Callable[..., Episode]]:
     begun: list[Episode] = []
 
-    def talk_(*says: Says, topics: tuple[Topic, ...] = (HOW,)) -> Episode:
+    def talk_(*says: Says, topics: tuple[Topic, ...] = (HOW,), setup: SessionSetup = BLIND) -> Episode:
         task = CATALOGUE["hvac_fan_max"]
         task = replace(task, first=replace(task.first, topics=topics, says=says))
         hand_over = SituationFinder(SPEC, simulations, task=task).find(SeedSource(0).next())
-        begun.append(Episode.take_over(hand_over, BLIND))
+        begun.append(Episode.take_over(hand_over, setup))
         return begun[-1]
 
     yield talk_
@@ -309,6 +312,79 @@ def test_what_the_driver_says_is_in_the_trace(talk):
     assert quiet.trace_sha256 != other.trace_sha256
     assert other.trace_sha256 == sha256([step.as_json() for step in other.steps])
     assert "said" not in quiet.steps[-1].as_json()
+
+
+BY_EAR = replace(BLIND, conditions=Conditions(hear=Hearing.CABIN))
+PARDONED = Action(ActionType.ASK_DRIVER, text="Pardon, could you say that again?")
+
+
+@pytest.fixture
+def loud(monkeypatch) -> None:
+    """What is heard is said with its ratio to the noise; the car's voice is understood unless it is off."""
+    monkeypatch.setattr("automotive_cosim.episode.session.heard", lambda text, snr_db: f"{text} ({snr_db:.1f})")
+
+
+def test_by_ear_the_noise_of_the_instant_decides_and_the_driver_repeats_what_he_said(talk, loud):
+    episode = talk(Says("Hurry up.", step=1), setup=BY_EAR)
+    wish, first_db = episode.instance.goal, driver_snr_db(level_db(episode.moments[0]))
+    assert episode.observation.goal == f"{wish} ({first_db:.1f})"
+    assert episode.steps[0].as_json()["heard"] == [episode.observation.goal]
+    assert episode.goal == wish
+    episode.step(PARDONED)
+    now_db = driver_snr_db(level_db(episode.world.moment))
+    assert episode.steps[1].said == (wish, "Hurry up.")
+    assert episode.observation.said == (f"{wish} ({now_db:.1f})", f"Hurry up. ({now_db:.1f})")
+    assert not episode.questions
+    # What the agent does to the cabin is heard at once: with the blower off, the same words are clearer.
+    episode.step(Action(ActionType.OPEN_APP, app_name="climate"))
+    fan = next(i for i, each in enumerate(episode.elements) if each.resource_id == shown_id("hvac.fan.decrease"))
+    while episode.world.moment.signals[HVAC.FAN_SPEED.path]:
+        episode.step(Action(ActionType.CLICK, index=fan))
+    episode.step(PARDONED)
+    assert driver_snr_db(level_db(episode.world.moment)) > first_db
+    assert episode.steps[-1].said == (wish, "Hurry up.")
+    episode.step(ASK)
+    assert [each.topic for each in episode.questions] == [HOW]
+
+
+def test_by_ear_speaking_takes_its_time_and_who_is_not_understood_is_asked_again(talk, loud, monkeypatch):
+    episode = talk(setup=BY_EAR)
+    answer = Action(ActionType.ANSWER, text="One two three four five six seven eight nine ten.")
+    begun_s = episode.seconds
+    episode.step(answer)
+    assert episode.seconds - begun_s == pytest.approx(1 + spoken_s(answer.text))
+    assert episode.said == (answer.text,)
+    monkeypatch.setattr("automotive_cosim.episode.session.is_understood", lambda moment: False)
+    episode.step(answer)
+    episode.step(ASK)
+    assert [step.said for step in episode.steps[-2:]] == [(PARDON,), (PARDON,)]
+    assert episode.said == (answer.text,)
+    assert not episode.questions
+
+
+def test_by_sound_the_agent_gets_every_word_as_sound_and_no_text(talk, monkeypatch):
+    monkeypatch.setattr("automotive_cosim.episode.session.sounding", lambda text, snr_db: f"RIFF {text}".encode())
+    episode = talk(
+        Says("From the rear left seat: Hurry up.", step=1),
+        setup=replace(BLIND, conditions=Conditions(hear=Hearing.AUDIO)),
+    )
+    wish = episode.instance.goal
+    assert (episode.observation.goal, episode.observation.sounds) == ("[spoken]", (f"RIFF {wish}".encode(),))
+    episode.step(WAIT)
+    assert episode.observation.said == ("From the rear left seat: [spoken]",)
+    assert episode.observation.sounds[1:] == (b"RIFF From the rear left seat: Hurry up.",)
+
+
+def test_words_as_text_leave_no_trace_of_the_cabin(talk):
+    episode = talk()
+    episode.step(PARDONED)
+    assert episode.observation.said == (NEUTRAL,)
+    assert not {"heard", "cabin_db"} & episode.steps[-1].as_json().keys()
+
+
+def test_there_is_no_voice_in_other_languages():
+    with pytest.raises(UserError, match="--hear cabin has no voice in French; give --language en, or --hear text"):
+        SessionSetup(conditions=Conditions(hear=Hearing.CABIN, language=Language.FRENCH))
 
 
 def test_a_session_without_a_task_gets_an_answer_that_does_not_help(begin):

@@ -25,7 +25,7 @@ from automotive_cosim.agents.settings import T3A
 from automotive_cosim.contracts import Action
 from automotive_cosim.errors import ActionError, ModelError, SetupError, UserError, install_hint
 from automotive_cosim.models import ChatMessage, make_model
-from automotive_cosim.models.apis import Chat, ChatTools
+from automotive_cosim.models.apis import Anthropic, Chat, ChatTools, Gemini, OpenAI
 from automotive_cosim.models.base import OUT_PER_S
 from automotive_cosim.models.refusal import pause_asked_s, reason, told
 from automotive_cosim.models.remote import BODY_LIMIT_BYTES, HIDDEN_TOKENS, _Endpoint
@@ -151,6 +151,19 @@ def test_pictures_go_along_as_they_are(server):
     assert [part["type"] for part in parts] == ["text", "image_url", "image_url"]
     sent = [base64.b64decode(part["image_url"]["url"].split(",")[1]) for part in parts[1:]]
     assert sent == [b"\x89PNG one", b"\x89PNG two"]
+
+
+def test_sound_goes_along_where_there_is_a_form_for_it_and_elsewhere_one_line_says_so(server):
+    spoken = ChatMessage("user", "listen", (b"RIFF one", b"\x89PNG two"))
+    model().chat([spoken])
+    parts = server.asked[0]["messages"][0]["content"]
+    assert [part["type"] for part in parts] == ["text", "input_audio", "image_url"]
+    assert parts[1]["input_audio"] == {"data": base64.b64encode(b"RIFF one").decode(), "format": "wav"}
+    told = Gemini().body("m", [spoken], {})["contents"][0]["parts"]
+    assert [part["inlineData"]["mimeType"] for part in told[1:]] == ["audio/wav", "image/png"]
+    for api in (Anthropic(), OpenAI()):
+        with pytest.raises(ModelError, match="takes no sound; choose another, or --hear cabin"):
+            api.body("m", [spoken], {})
 
 
 @pytest.mark.parametrize("status", [408, 409, 429, 500, 502, 503])

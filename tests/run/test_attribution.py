@@ -25,13 +25,18 @@ SLOW = Action(ActionType.REQUEST_SLOW_DOWN, speed_kmh=15.0)
 SAYS = Action(ActionType.ANSWER, text="all is well")
 WAIT = Action(ActionType.WAIT, seconds=10)
 DONE = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
-TRIALS = {"twice": [HOME, FAN, FAN, DONE], "slow": [SLOW, SAYS, WAIT, WAIT, DONE]}
+TRIALS = {
+    "twice": [HOME, FAN, FAN, DONE],
+    "slow": [SLOW, SAYS, WAIT, WAIT, DONE],
+    "attention_on": [FAN, SLOW, SAYS, WAIT, SAYS, WAIT, DONE],
+}
 
 
 @pytest.fixture
 def folder(request: pytest.FixtureRequest, run: Callable[..., Any]) -> Path:
     """A recorded trial by name."""
-    trial: Path = run(ScriptedAgent(TRIALS[request.param]), interface="both").folder
+    attention = "on" if request.param == "attention_on" else "off"
+    trial: Path = run(ScriptedAgent(TRIALS[request.param]), interface="both", attention=attention).folder
     return trial
 
 

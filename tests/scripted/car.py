@@ -145,6 +145,9 @@ class ScriptedCar:
     def set_imperfection(self, imperfection: float) -> None:
         """Does nothing: speed is kept perfectly here."""
 
+    def set_awareness(self, awareness: float) -> None:
+        """Does nothing: nobody misjudges anything here."""
+
     def set_hazards(self, on: bool) -> None:
         """Does nothing: nobody is there to see them."""
 

@@ -34,17 +34,22 @@ LEAST = {
 """By dimension, in ``Dimension``'s order; 185 together."""
 
 
-SPEED = [task for task in TASKS if task.suite is Suite.SPEED]
-FAMILIES = {text for task in SPEED for text in task.templates}
+FAMILIES = {
+    Suite.SPEED: (60, 9, 4, tuple(Language)),
+    Suite.VOICE: (30, 10, 1, (Language.ENGLISH,)),
+}
+"""The suites of families: how many pairs and families at least, how many in each, and the languages."""
+OF_FAMILIES = [task for task in TASKS if task.suite in FAMILIES]
 
 
-def test_the_suite_of_speed_limits_is_of_families_in_all_languages():
-    families = Counter(task.templates for task in SPEED)
-    assert len(SPEED) >= 60
-    assert len(families) >= 9
-    assert len(FAMILIES) == sum(map(len, families)), "a family's words are its own"
-    assert min(families.values()) >= 4
-    assert all(task.second is not None and task.languages == tuple(Language) for task in SPEED)
+@over((suite, *counts) for suite, counts in FAMILIES.items())
+def test_some_suites_are_of_families(suite, pairs, families, members, languages):
+    found = Counter(task.templates for task in OF_FAMILIES if task.suite is suite)
+    assert sum(found.values()) >= pairs
+    assert len(found) >= families
+    assert len({text for texts in found for text in texts}) == sum(map(len, found)), "a family's words are its own"
+    assert min(found.values()) >= members
+    assert all(task.second and task.languages == languages for task in OF_FAMILIES if task.suite is suite)
 
 
 def halves(task: Task):
@@ -154,12 +159,12 @@ def test_no_two_tasks_share_goal_trigger_and_reference_solution():
 
 
 def test_no_text_belongs_to_two_tasks():
-    """But to the members of a family of the suite of speed limits."""
+    """But to the members of a family."""
     said = Counter(
         text.casefold()
         for text in (
-            *FAMILIES,
-            *(text for task in TASKS if task.suite is not Suite.SPEED for text in set(task.templates)),
+            *{text for task in OF_FAMILIES for text in task.templates},
+            *(text for task in TASKS if task not in OF_FAMILIES for text in set(task.templates)),
         )
     )
     assert [text for text, count in said.items() if count > 1] == []

@@ -130,8 +130,8 @@ def too_near(tasks: Sequence[Task], apart: np.ndarray) -> list[str]:
     ]
 
 
-TASKS = tuple(task for task in CATALOGUE.values() if task.suite is not Suite.SPEED)
-"""Without the suite of speed limits, whose families ask one thing in many countries, as a protocol does."""
+TASKS = tuple(task for task in CATALOGUE.values() if task.suite not in (Suite.SPEED, Suite.VOICE))
+"""Without the suites of families, which ask one thing in many countries, as a protocol does, or in many noises."""
 
 
 @pytest.fixture(scope="module")

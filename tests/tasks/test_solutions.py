@@ -16,13 +16,16 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.signals import ACTUATORS, HMI, difference, named
 from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import ActionType, Answer, Feedback, FeedbackCode, Observation, RoadNetwork
+from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.episode.episode import counterfactual
 from automotive_cosim.episode.situation import PARKED
 from automotive_cosim.proof.mutations import another_value
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.task import Start, Task
+from automotive_cosim.tasking.ways import units_in
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import hold
 
@@ -49,6 +52,9 @@ SPOKEN = [
     for language in [sorted(task.spoken)[number % len(task.spoken)]]
 ]
 """Each half in one of the languages, in turn."""
+MAKES = [make for make in CarMake if make not in (CarMake.HOME, CarMake.DRAWN)]
+MADE = [(task, half, make) for make in MAKES for task, half in HALVES]
+MADE_PARTS = len(MAKES) * GROUPS
 FROM_S = 900.0
 SECONDS_LIMIT = 120
 
@@ -94,13 +100,18 @@ def _hand_over_s(start: Start) -> int:
 
 
 def _taken_over(
-    task: Task, half: str, network: RoadNetwork, language: Language = Language.ENGLISH
+    task: Task,
+    half: str,
+    network: RoadNetwork,
+    language: Language = Language.ENGLISH,
+    make: CarMake = CarMake.HOME,
 ) -> tuple[Instance, Cockpit]:
     """The instance, and the cockpit some seconds after departure."""
-    instance = draw(task, half, 0, language=language)
+    instance = draw(task, half, 0, language=language, make=make)
+    dressed = make_named(make)
     while True:  # what the cockpit holds is known only when there is one
         start = instance.half.start
-        signals = {HMI.LANGUAGE.path: str(language), **start.signals}
+        signals = {HMI.LANGUAGE.path: str(language), **units_in(dressed, task), **start.signals}
         cockpit = Cockpit(
             network,
             rng=np.random.default_rng(1),
@@ -110,8 +121,9 @@ def _taken_over(
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,
+            make=dressed,
         )
-        again = draw(task, half, 0, cockpit.content, language=language)
+        again = draw(task, half, 0, cockpit.content, language=language, make=make)
         if (again.goal, again.parameters) == (instance.goal, instance.parameters):
             break
         instance = again
@@ -211,6 +223,21 @@ def test_it_is_solved_in_another_language(part, network):
         assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set()
 
     hold(SPOKEN[part::GROUPS], check)
+
+
+@pytest.mark.parametrize(
+    "part", [part if part == 0 else pytest.param(part, marks=pytest.mark.proof) for part in range(MADE_PARTS)]
+)
+def test_it_is_solved_in_every_make(part, network):
+    """By its way there, and by nothing else than at home."""
+
+    def check(task: Task, half: str, make: CarMake) -> None:
+        instance, cockpit = _taken_over(task, half, network, make=make)
+        solved = _solved(instance, cockpit, instance.half.moves)
+        assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments)
+        assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set()
+
+    hold(MADE[part::MADE_PARTS], check)
 
 
 @pytest.mark.parametrize("played", SAMPLE, indirect=True)

@@ -276,7 +276,7 @@ APP = App(
     order=3,
     where=Where.DOCK,
     functions=(schedule_climate,),
-    pages={"climate": AppPage(climate), "comfort": AppPage(comfort)},
+    pages={"climate": AppPage(climate, sided=True), "comfort": AppPage(comfort)},
     aliases={"hvac": ""},
     starts=lambda state, rng: (ClimateSchedule(),),
 )

@@ -23,6 +23,7 @@ def launcher(state: State) -> tuple[Widget, ...]:
         *apps_in(Where.STATUS),
         *(app for app in apps_in(Where.DOCK) if app.name not in ("home", "apps")),
     )
+    offered = tuple(app for app in offered if app.name not in state.make.placed)
 
     def entry(index: int, app: App) -> Button:
         return Button(

@@ -47,7 +47,14 @@ LANGUAGES = {"en": "English", "fr": "Français", "de": "Deutsch", "ja": "日本�
 
 
 def _page(state: State, *cards: Block) -> tuple[Widget, ...]:
-    return fill(content(state), line((264, menu("settings.page", PAGES, state)), GAP, panels(*cards)))
+    return fill(
+        content(state),
+        line(
+            (264, menu("settings.page", [page for page in PAGES if state.beside(page[0])], state)),
+            GAP,
+            panels(*cards),
+        ),
+    )
 
 
 def settings(state: State) -> tuple[Widget, ...]:

@@ -68,7 +68,7 @@ APP = App(
         "driving": AppPage(driving),
         "doors": AppPage(doors),
         "seats": AppPage(seats),
-        "mirrors": AppPage(mirrors),
+        "mirrors": AppPage(mirrors, sided=True),
         "interior": AppPage(interior),
     },
     aliases={"road": ""},

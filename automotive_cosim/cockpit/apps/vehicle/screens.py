@@ -28,8 +28,9 @@ TABS = (
 
 def page(state: State, *items: BlockItem) -> tuple[Widget, ...]:
     """The car on the left; on the right its parts, and below them what is given."""
+    shown = [tab for tab in TABS if state.beside(tab[-1])]
     tabs = choices(
-        "vehicle.tab", ((name, text, icon, state.screen == to, Show(to)) for name, text, icon, to in TABS)
+        "vehicle.tab", ((name, text, icon, state.screen == to, Show(to)) for name, text, icon, to in shown)
     )
     return fill(content(state), panels((CAR_WIDTH, _car(state)), stack((64, tabs), GAP, *items)))
 

@@ -1,0 +1,115 @@
+"""Screens of a make's own: its menus, and controls of home's screens in another arrangement.
+
+Nothing is made twice: a control is taken from the screen that has it at home, with all that it does, and put into
+another box.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import TypeVar
+
+from automotive_cosim.cockpit.app import AppPage
+from automotive_cosim.cockpit.cards import back, content, heading, rows, title
+from automotive_cosim.cockpit.flow import Block, BlockPart, fill, framed, grid, line, stack
+from automotive_cosim.cockpit.layout import REST
+from automotive_cosim.cockpit.make import OwnScreen, Shelf
+from automotive_cosim.cockpit.messages import Show
+from automotive_cosim.cockpit.registry import pages
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.tree import named, shown_by
+from automotive_cosim.cockpit.widgets import Button, Choice, Label, Row, Slider, Tile, Widget
+from automotive_cosim.contracts.text import Text
+
+W = TypeVar("W", bound=Widget)
+LINE_HEIGHT, LINE_GAP, INSET = 84, 8, (12, 8)
+NARROW_ROOM, WIDE_ROOM, TWO_COLUMNS, MOST_CHOICES = 392, 640, 1100, 4
+"""Width of a control beside its name; lines stand in two columns on screens wider than that, unless one has more
+choices."""
+
+
+def page_of(state: State) -> AppPage:
+    """The screen that is shown, as the make has it."""
+    place = state.make.screens.get(state.screen)
+    if place is None:
+        return pages()[state.screen]
+    return AppPage(partial(_menu if place.holds else _shelves, state.screen, place), Room.TWO)
+
+
+def moved(widget: W, across: int) -> W:
+    """The widget and all in it so many pixels further to the right."""
+    if not across:
+        return widget
+    children = tuple(moved(child, across) for child in widget.children)
+    return replace(widget, rect=widget.rect.moved(across, 0), children=children)
+
+
+def _menu(screen: str, place: OwnScreen, state: State) -> tuple[Widget, ...]:
+    """The screens that it leads to."""
+    make, tiles = state.make, state.make.menus == "tiles"
+
+    def entry(index: int, name: str) -> Widget:
+        text, icon = named(make, name)
+        key, on_tap = f"{screen}.{name}", Show(name)
+        if tiles:
+            return Button(
+                key=key, text=text, icon=icon, icon_size=44, stacked=True, style=Type.STRONG, on_tap=on_tap
+            )
+        return Row(key=key, text=text, icon=icon, on_tap=on_tap)
+
+    columns, height = (3, 150) if tiles else (1, 72)
+    every = rows(f"{screen}.all", place.text, state, place.holds, entry, columns=columns, height=height, gap=GAP)
+    return _titled(screen, place, state, every)
+
+
+def _shelves(screen: str, place: OwnScreen, state: State) -> tuple[Widget, ...]:
+    """The controls that it shows."""
+    every = [part for shelf in place.shelves for part in _parts(shelf, state)]
+    widest = max(sum(isinstance(each, Choice) for each in own) for own, _ in every)
+    wide = content(state).width > TWO_COLUMNS
+    columns, room = (2, NARROW_ROOM) if wide and widest <= MOST_CHOICES else (1, WIDE_ROOM if wide else NARROW_ROOM)
+    listed = rows(
+        f"{screen}.all", place.text, state, every, lambda _, part: _line(*part, room), columns=columns,
+        height=LINE_HEIGHT, gap=LINE_GAP,
+    )  # fmt: skip
+    return _titled(screen, place, state, listed)
+
+
+def _titled(screen: str, place: OwnScreen, state: State, body: BlockPart) -> tuple[Widget, ...]:
+    head = line(title(Icon[place.icon], place.text, f"{screen}.title"), GAP, (160, back(screen)))
+    return fill(content(state), stack((48, head), GAP, (REST, body)))
+
+
+def _parts(shelf: Shelf, state: State) -> Iterator[tuple[list[Widget], str]]:
+    """The widgets of each control, and its name."""
+    made = [widget for child in pages()[shelf.of].made(state) for widget in child.walk() if widget.key]
+    for control in shelf.controls:
+        own = [each for each in made if shown_by(shelf.controls, each.key) is control]
+        if own:
+            yield own, Text(control[1], {}, "make") if control[1:] else ""
+
+
+def _line(own: list[Widget], name: str, room: int) -> Block:
+    """A control, after its name unless it shows it itself."""
+    labels = [each for each in own if isinstance(each, Label)]
+    if len(labels) == len(own):
+        told = replace(labels[0], style=Type.LABEL, align="left", lines=1)
+        return framed(line(4, heading(told.description), told) if told.description else line(4, told), INSET)
+    touched = sorted((each for each in own if each.listens), key=lambda each: each.rect.x)
+    if touched and all(isinstance(each, Choice) for each in touched):
+        control = framed(grid(len(touched), 4, *touched), (4, 4), look="raised")
+    elif labels:
+        first, *others = touched
+        control = line(
+            (64, first), replace(labels[0], style=Type.STRONG, align="centre"), *((64, each) for each in others)
+        )
+        name = name or labels[0].description
+    else:
+        control = grid(len(touched), GAP, *touched)
+        if not name and any(isinstance(each, Tile | Slider | Button) and each.text for each in touched):
+            return framed(control, INSET)
+    return framed(line(4, (REST, heading(name)), 8, (room, control)), INSET)

@@ -1,0 +1,63 @@
+"""Laws over the suite in which the cabin's sound decides, or who said it."""
+
+from automotive_cosim.tasking.checks import AskedBack, NotAsked
+from automotive_cosim.tasking.dialogue import asks_again, topic_of
+from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.moves import Consult
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.voice import table
+from tests.laws import over
+
+VOICE = CATALOGUE.of(Suite.VOICE)
+BY_KIND = {
+    kind: [task for task in VOICE if task.id.startswith(f"voice_{kind}_")] for kind in ("ask", "heed", "quiet")
+}
+
+
+def asks(moves):
+    return any(isinstance(move, Consult) for move in moves)
+
+
+@over(BY_KIND["ask"])
+def test_in_noise_a_guess_loses_and_in_quiet_a_question(task):
+    """The gate ``slip`` plays them."""
+    assert any(isinstance(check, AskedBack) for check in task.first.goal.checks)
+    assert any(isinstance(check, NotAsked) for check in task.second.goal.checks)
+    assert asks(task.first.moves)
+    assert not asks(task.first.slips[0])
+    assert not asks(task.second.moves)
+    assert asks(task.second.slips[0])
+
+
+@over(BY_KIND["ask"])
+def test_whoever_asks_for_it_again_is_told_in_other_words(task):
+    for number in range(8):
+        half = draw(task, "first", number).half
+        (question,) = (move.text for move in half.moves if isinstance(move, Consult))
+        for words in (question, "Could you say that again?", "Pardon?", "I didn't catch that."):
+            assert topic_of(words, half.topics) == half.topics[0]
+        assert half.topics[0].choices[0][0].casefold() in half.topics[0].reply.casefold()
+
+
+@over(BY_KIND["heed"])
+def test_the_same_words_come_from_the_driver_or_from_elsewhere(task):
+    for number in range(8):
+        (mine,), (theirs,) = (draw(task, name, number).half.says for name in task.halves)
+        assert theirs.text.startswith("From the ")
+        assert list(table.pieces(theirs.text)) == list(table.pieces(mine.text)) == [mine.text]
+
+
+@over(BY_KIND["quiet"])
+def test_what_is_loud_in_one_half_is_soft_in_the_other(task):
+    loud, soft = task.first.start.signals, task.second.start.signals
+    assert loud != soft
+    assert not task.first.goal.writes & task.second.goal.writes
+
+
+def test_every_pair_is_of_a_kind_and_may_be_asked_to_repeat():
+    assert sum(map(len, BY_KIND.values())) == len(VOICE) >= 30
+    for words in ("Sorry, say that again?", "Could you repeat that?", "I didn’t catch that.", "What did you say?"):
+        assert asks_again(words)
+    for words in ("Shall I shut the window?", "Which one, Tara or Dara?", "Should the fan go to 50 percent?"):
+        assert not asks_again(words)

