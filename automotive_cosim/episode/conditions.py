@@ -56,8 +56,6 @@ class Words:
     """What its values mean, below that table."""
     is_speed: bool = False
     """Whether it is about how fast the agent answers, and not about what it is given."""
-    is_rare: bool = False
-    """Whether rows leave its default out: it came later than rows on record."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -171,7 +169,6 @@ class Conditions:
             "Hears", "hears by {}", "hear_{}", "Success by how the agent hears",
             "What people in the car say reaches the agent as text, or as a recogniser made it out in the noise of "
             "that instant (cabin), or as sound (audio); then speaking takes time, and the driver may not hear it.",
-            is_rare=True,
         ),
     ] = Hearing.TEXT  # fmt: skip
     """How the driver's words reach the agent: as they are (``text``), as a recogniser makes them out in the

@@ -46,7 +46,7 @@ from automotive_cosim.interface import trace
 from automotive_cosim.interface.controls import Shown, shown
 from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
-from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, asks_again, spoken_s
+from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, TOLD_HEARD, asks_again, spoken_s
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
 from automotive_cosim.voice.cabin import driver_snr_db, is_understood, level_db
 from automotive_cosim.voice.table import SPOKEN, came_from, heard, sounding
@@ -417,7 +417,7 @@ def beginning(
     make = setup.conditions.make
     world.cockpit.fit(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
-    feedback = Feedback(FeedbackCode.NONE, "")
+    feedback = Feedback(FeedbackCode.NONE, TOLD_HEARD if is_by_ear else "")
     elements, observation = _seen(
         world,
         wish,

@@ -67,9 +67,15 @@ class Step:
             "connectivity": plain(moment.connectivity),
             "context": moment.context.text(),
             "events": [plain(event) for event in moment.events],
-            **({SAID: list(self.said)} if self.said else {}),
-            **({} if self.heard is None else {"heard": list(self.heard), "cabin_db": self.cabin_db}),
-            **({} if moment.awareness is None else {"awareness": moment.awareness}),
+        } | {
+            name: value
+            for name, value in (
+                (SAID, list(self.said)),
+                ("awareness", moment.awareness),
+                ("heard", list(self.heard or ())),
+                ("cabin_db", self.cabin_db),
+            )
+            if value not in ([], None)
         }
 
 

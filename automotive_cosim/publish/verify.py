@@ -24,7 +24,6 @@ import numpy as np
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.formats.limited import LimitedProcesses
@@ -206,10 +205,9 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialSetup]) -> Iterat
     plan, starts = manifest["plan"], manifest.get("starts") or []
     for name in manifest.keys() - {"format", "plan", "episodes", "starts"}:
         yield Problem(MANIFEST, name, "is not a field of a manifest")
-    read = make_plan(plan).as_json()
-    later = {each.name for each in TABLE if each.words.is_rare and read[each.name] == [each.default]}
-    names = [name for name in {**plan, **read} if name in plan or name not in later]
-    yield from differences(MANIFEST, "plan", plan, read, names, "reading it")
+    yield from differences(
+        MANIFEST, "plan", plan, make_plan(plan).as_json(), {**plan, **make_plan(plan).as_json()}, "reading it"
+    )
     if manifest.get("episodes", len(jobs)) != len(jobs):
         yield Problem(MANIFEST, "episodes", f"is {manifest['episodes']}, but the plan has {len(jobs)}")
     if not starts:

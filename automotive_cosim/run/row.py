@@ -16,7 +16,6 @@ from typing import Annotated, Any, Generic, TypeVar, get_type_hints
 from pydantic import TypeAdapter, ValidationError
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import ScenarioError
 
 T = TypeVar("T")
@@ -67,15 +66,7 @@ def remedy(failed: Iterable[JobRow]) -> str:
 
 
 def as_json(record: object) -> Json:
-    """A row, or another dataclass, as a JSON object: a key for each field, but for defaults of rare conditions."""
-    made = _whole(record)
-    for each in TABLE if "conditions" in made else ():
-        if each.words.is_rare and made["conditions"][each.name] == each.default:
-            del made["conditions"][each.name]
-    return made
-
-
-def _whole(record: object) -> Json:
+    """A row, or another dataclass, as a JSON object with a key for each field."""
     made: Json = _form(type(record)).adapter.dump_python(record, mode="json")
     return made
 
@@ -126,7 +117,7 @@ def columns(record: object) -> Json:
     """
     made: Json = {}
     marks = _form(type(record)).marks
-    for name, value in _whole(record).items():
+    for name, value in as_json(record).items():
         inside = next((mark for mark in marks[name] if isinstance(mark, InColumns)), None)
         if inside is None:
             made[name] = value

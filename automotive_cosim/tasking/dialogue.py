@@ -19,6 +19,8 @@ from automotive_cosim.tasking.triggers import TriggerCondition
 
 NEUTRAL = "You know as much as I do. Do as you think best."
 """The answer to a question that the task has no topic for."""
+TOLD_HEARD = "Words are heard in the noise of the cabin and may be wrong; the driver repeats them if you ask."
+"""What an agent that hears is told at first."""
 PARDON = "What did you say?"
 """What the driver says if he did not understand the car."""
 LOOK_FIRST = "The calendar and the memos may say it; what the car doesn't know, ask me."

@@ -22,7 +22,7 @@ from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource,
 from automotive_cosim.errors import ActionError, AgentError, NoRoomError, OutOfBudgetError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import sha256
-from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, Says, Topic, spoken_s
+from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, TOLD_HEARD, Says, Topic, spoken_s
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.voice.cabin import driver_snr_db, level_db
 
@@ -328,6 +328,7 @@ def test_by_ear_the_noise_of_the_instant_decides_and_the_driver_repeats_what_he_
     episode = talk(Says("Hurry up.", step=1), setup=BY_EAR)
     wish, first_db = episode.instance.goal, driver_snr_db(level_db(episode.moments[0]))
     assert episode.observation.goal == f"{wish} ({first_db:.1f})"
+    assert episode.observation.feedback.text == TOLD_HEARD
     assert episode.steps[0].as_json()["heard"] == [episode.observation.goal]
     assert episode.goal == wish
     episode.step(PARDONED)
@@ -335,13 +336,12 @@ def test_by_ear_the_noise_of_the_instant_decides_and_the_driver_repeats_what_he_
     assert episode.steps[1].said == (wish, "Hurry up.")
     assert episode.observation.said == (f"{wish} ({now_db:.1f})", f"Hurry up. ({now_db:.1f})")
     assert not episode.questions
-    # What the agent does to the cabin is heard at once: with the blower off, the same words are clearer.
+    # What the agent does to the cabin is heard at once: with more of the blower, the same words are less clear.
     episode.step(Action(ActionType.OPEN_APP, app_name="climate"))
-    fan = next(i for i, each in enumerate(episode.elements) if each.resource_id == shown_id("hvac.fan.decrease"))
-    while episode.world.moment.signals[HVAC.FAN_SPEED.path]:
-        episode.step(Action(ActionType.CLICK, index=fan))
+    fan = next(i for i, each in enumerate(episode.elements) if each.resource_id == shown_id("hvac.fan.max"))
+    episode.step(Action(ActionType.CLICK, index=fan))
     episode.step(PARDONED)
-    assert driver_snr_db(level_db(episode.world.moment)) > first_db
+    assert driver_snr_db(level_db(episode.world.moment)) < now_db - 3
     assert episode.steps[-1].said == (wish, "Hurry up.")
     episode.step(ASK)
     assert [each.topic for each in episode.questions] == [HOW]
