@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from automotive_cosim.episode.conditions import TABLE
+from automotive_cosim.episode.conditions import TABLE, Conditions
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.formats.words import shown
 from automotive_cosim.run.trial_row import TrialRow
@@ -59,8 +59,7 @@ def differences(
 def _of_today(found: Mapping[str, Any]) -> Mapping[str, Any]:
     """A plan or a row with every condition: what was run before there was one was run at its default."""
     if isinstance(row := found.get("conditions"), dict):
-        usual = {each.name: each.default for each in TABLE if not each.words.is_rare}
-        return {**found, "conditions": usual | row}
+        return {**found, "conditions": Conditions().as_json() | row}
     return {each.name: [each.default] for each in TABLE} | dict(found)
 
 
