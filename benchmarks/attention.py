@@ -29,10 +29,11 @@ from automotive_cosim.drives.watchers import READS, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.session import play
 from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.measures.following import is_near
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.traffic.fork import Simulations
 
-FAMILIES = ("peripherique_june", "autobahn_july", "paris_july", "london_july", "grid_june")
+FAMILIES = ("grid_june", "autobahn_july", "london_july", "paris_july", "peripherique_june")
 SEEDS = 10
 MINUTES = 3.0
 FOLLOWS_S = 3.0
@@ -103,21 +104,17 @@ def figures(drive: Sequence[Moment]) -> dict[str, float]:
         if leader.time_to_collision_s is not None:
             least_s = min(least_s, leader.time_to_collision_s)
     braking = [-state.acceleration_mps2 for state in states]
+    step_s = states[1].time_s - states[0].time_s
     return {
         "attention lost, s": harmed.unaware_s,
         "hardest braking, m/s2": max(braking),
-        "braking above 3.4 m/s2, s": sum(each > DEFAULT_THRESHOLDS.drac_mps2 for each in braking) * _step_s(states),
+        "braking above 3.4 m/s2, s": sum(each > DEFAULT_THRESHOLDS.drac_mps2 for each in braking) * step_s,
         "least gap when following, s": min(gaps, default=FOLLOWS_S),
         "spread of that gap, s": float(np.std(gaps)) if gaps else 0.0,
         "least time to collision, s": least_s,
         "above the limit, m": harmed.over_limit_m,
-        "near a collision, s": harmed.short_ttc_s,
+        "near a collision, s": sum(map(is_near, states)) * step_s,
     }
-
-
-def _step_s(states: Sequence[object]) -> float:
-    times = [state.time_s for state in states[:2]]  # type: ignore[attr-defined]
-    return round(times[1] - times[0], 6)
 
 
 def played(family: str, seed: int, who: str, simulations: Simulations) -> dict[str, float]:
@@ -162,11 +159,12 @@ def main() -> None:
     parsed.keep.mkdir(parents=True, exist_ok=True)
     file = parsed.keep / "figures.json"
     found = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    seeds, families = range(parsed.seeds), parsed.families
     with closing(Simulations()) as simulations:
-        for family, seed, who in product(parsed.families, range(parsed.seeds), AGENTS):
-            name = f"{family} {seed} {who}"
+        for name in [f"{family} {seed} {who}" for seed, family, who in product(seeds, families, AGENTS)]:
+            family, seed, who = name.split()
             if name not in found and time.monotonic() - begun_s < parsed.for_s:
-                found[name] = played(family, seed, who, simulations)
+                found[name] = played(family, int(seed), who, simulations)
                 write_whole(file, json.dumps(found, indent=1) + "\n")
     print(table(found))
     print(f"{len(found)} drives")

@@ -430,6 +430,16 @@ class CALL:
     """Number of senders with unread messages."""
 
 
+class DRIVER:
+    """What an interior camera makes of the driver: it sees eyes and hours, not the mind. None where the driver's
+    attention is not limited; then records leave them out, as those from before did."""
+
+    DISTRACTION = _maybe("Driver.DistractionLevel", "percent", 0, 100)
+    """How much of two seconds the eyes have been away from the road."""
+    FATIGUE = _maybe("Driver.FatigueLevel", "percent", 0, 100)
+    """From two hours without a break to nine."""
+
+
 class VOICE:
     """The other sounds: guidance, calls, the screen's clicks."""
 
@@ -510,7 +520,10 @@ class Signals:
 
     def snapshot(self) -> dict[str, Any]:
         """Path and value of every signal; a copy."""
-        return dict(self._values)
+        values = dict(self._values)
+        if values[DRIVER.DISTRACTION.path] is None:
+            del values[DRIVER.DISTRACTION.path], values[DRIVER.FATIGUE.path]
+        return values
 
     def commanded(self) -> dict[str, Any]:
         """Path and value of every actuator; a copy."""

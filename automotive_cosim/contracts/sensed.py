@@ -17,6 +17,8 @@ class SightKind(StrEnum):
     """The driver has left the parked car: who or what is still aboard."""
     PHONE = "phone"
     """The driver uses a phone."""
+    EYES = "eyes"
+    """The driver's eyes are off the road."""
     TAILGATE = "tailgate"
     CHARGE_FLAP = "charge_flap"
     TYRE = "tyre"

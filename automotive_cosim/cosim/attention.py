@@ -19,7 +19,7 @@ import math
 from dataclasses import dataclass, replace
 from itertools import takewhile
 
-from automotive_cosim.cockpit.signals import CALL
+from automotive_cosim.cockpit.signals import CALL, DRIVER
 from automotive_cosim.cockpit.state import State
 
 GLANCE_S, TASK_S = 2.0, 12.0
@@ -107,13 +107,18 @@ class Attention:
             self.read = state.notices[-1].at_s, state.notices[-1].text
         return read_s
 
-    def passed(self, state: State, dt_s: float) -> None:
-        """Lets time pass that ends now."""
+    def glanced(self, dt_s: float) -> None:
+        """Lets time pass for the eyes."""
         if self.is_away:
             self.eyes_s, self.look_s = max(0.0, self.eyes_s - dt_s), max(0.0, self.look_s - dt_s)
             self.is_away = self.eyes_s > 0.0 and self.look_s > 0.0
         else:
             self.eyes_s = min(GLANCE_S, self.eyes_s + dt_s)
+        self._look(0.0)
+
+    def passed(self, state: State, dt_s: float) -> None:
+        """Lets time pass that ends now."""
+        self.glanced(dt_s)
         self.load *= math.exp(-dt_s / FADES_S)
         talked_s = min(dt_s, self.talk_s)
         self.talk_s -= talked_s
@@ -122,6 +127,8 @@ class Attention:
             self.look_s = max(self.look_s, GLANCE_S)
         self.hours = (state.driven_s + state.time_s - state.departed_s) / 3600
         self._look(self.new_text_s(state))
+        state.signals[DRIVER.DISTRACTION] = round(100 * (1 - self.eyes_s / GLANCE_S), 1)
+        state.signals[DRIVER.FATIGUE] = round(100 * self._tired, 1)
 
     def think(self, state: State) -> None:
         """What is on the driver's mind from now on."""
@@ -139,8 +146,11 @@ class Attention:
         """In the coming second, 0.1 to 1."""
         half_s = -0.5 if self.is_away else 0.5
         eyes = min(1.0, max(0.0, (self.eyes_s + half_s) / GLANCE_S))
-        tired = min(1.0, max(0.0, (self.hours - FRESH_H) / (SPENT_H - FRESH_H)))
-        return max(LEAST, round(eyes * (1 - MIND * self.load) * (1 - (1 - SPENT) * tired), 3))
+        return max(LEAST, round(eyes * (1 - MIND * self.load) * (1 - (1 - SPENT) * self._tired), 3))
+
+    @property
+    def _tired(self) -> float:
+        return min(1.0, max(0.0, (self.hours - FRESH_H) / (SPENT_H - FRESH_H)))
 
     def _look(self, for_s: float) -> None:
         """Drivers look away once they have seen enough of the road, and leave what takes too long."""

@@ -36,7 +36,7 @@ def state(hours: float = 0.0, *, sun_deg: float = 30.0, partner: str = "", phone
     outside = SimpleNamespace(
         driving=driving, sun_elevation_deg=sun_deg, weather=SimpleNamespace(visibility=20_000.0)
     )
-    signals = {CALL.PARTNER: partner, CALL.PHONE: phone}
+    signals: dict[Any, Any] = {CALL.PARTNER: partner, CALL.PHONE: phone}
     return SimpleNamespace(
         notices=(), signals=signals, driven_s=hours * 3600, time_s=0.0, departed_s=0.0, outside=outside
     )

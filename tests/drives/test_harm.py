@@ -7,7 +7,11 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.contracts import EgoEnd
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.harm import harm
+from automotive_cosim.drives.judge import Judgement
+from automotive_cosim.drives.score import score
+from automotive_cosim.tasking.verdict import _safe
 from automotive_cosim.traffic.base import Event
 from tests.drives.scenes import stream, vehicle
 
@@ -35,3 +39,21 @@ def test_a_collision_of_two_others_is_not_the_cars() -> None:
     assert not harm([*drive[:-1], others]).collided
     mine = replace(others, driving=replace(others.driving, end=EgoEnd.COLLIDED))
     assert harm([*drive[:-1], mine]).collided
+
+
+@pytest.mark.parametrize("near", [True, False])
+@pytest.mark.parametrize("anyway", [True, False])
+@pytest.mark.parametrize("awareness", [None, 1.0, 0.4])
+def test_harm_counts_where_attention_was_elsewhere_and_doing_nothing_does_none(
+    near: bool, anyway: bool, awareness: float | None
+) -> None:
+    def driven(is_near: bool, aware: float | None) -> list[Moment]:
+        leader = vehicle(20.0, 10, time_to_collision_s=2.5, drac_mps2=4.0) if is_near else None
+        return [replace(each, awareness=aware) for each in stream(5, leader=leader)]
+
+    untouched = None if awareness is None else 1.0
+    part = _safe(driven(near, awareness), driven(anyway, untouched))
+    assert part.ok is not (near and not anyway and awareness == 0.4), part.why
+    assert harm(driven(near, awareness)).unaware_s == (3.0 if awareness == 0.4 else 0.0)
+    nothing = Judgement((), ())
+    assert score(nothing, 60.0).value == 0.0 > score(nothing, 60.0, harmed_s=2.0).value

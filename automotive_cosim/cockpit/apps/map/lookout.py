@@ -13,7 +13,19 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.notices import LOW_KPA
 from automotive_cosim.cockpit.occupants import Kind, Seat, seated
 from automotive_cosim.cockpit.sensor_range import BLUE_LIGHT_M, CAMERA_M, CLOSING_MPS, HORIZON_M, REAR_RADAR_M
-from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOTION, OCCUPANT, SEAT, TYRE, Signals
+from automotive_cosim.cockpit.signals import (
+    ADAS,
+    CABIN,
+    CALL,
+    DRIVER,
+    ENERGY,
+    HMI,
+    MOTION,
+    OCCUPANT,
+    SEAT,
+    TYRE,
+    Signals,
+)
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.values import distance, pressure, speed, speed_unit
@@ -40,6 +52,7 @@ ICONS: Mapping[SightKind, Icon] = {
     SightKind.PASSENGER_BELT: Icon.SEAT_BELT,
     SightKind.WITHOUT_DRIVER: Icon.CHILD,
     SightKind.PHONE: Icon.PHONE,
+    SightKind.EYES: Icon.EYE,
     SightKind.TAILGATE: Icon.VEHICLE_FAULT,
     SightKind.CHARGE_FLAP: Icon.VEHICLE_FAULT,
     SightKind.TYRE: Icon.TYRE,
@@ -101,6 +114,8 @@ def _aboard(state: State) -> Iterator[Sight]:
         yield Sight(SightKind.WITHOUT_DRIVER, left)
     if signals[CALL.PHONE] != "AWAY":
         yield Sight(SightKind.PHONE, PHONE[signals[CALL.PHONE]])
+    if signals[DRIVER.DISTRACTION]:
+        yield Sight(SightKind.EYES, say("Driver looks away from the road"), value=signals[DRIVER.DISTRACTION])
     if signals[CABIN.TRUNK]:
         yield Sight(SightKind.TAILGATE, say("Tailgate is open"))
     if signals[ENERGY.CHARGE_FLAP]:
