@@ -88,6 +88,11 @@ class EgoDrive:
         """Whether they are on."""
         return self._driver.hazard_lights
 
+    @property
+    def driver_state(self) -> tuple[object, ...]:
+        """What the driver has in mind, and draws next (``Driver.state``)."""
+        return self._driver.state
+
     def proceed(self, now: Instant, events: tuple[Event, ...]) -> tuple[Event, ...]:
         """Takes the instant after a step and its events, and gives the driver his turn; all that happened."""
         self._now = now
