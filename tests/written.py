@@ -7,9 +7,9 @@ from typing import Any
 from automotive_cosim.tasking.checks import Check
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
-from automotive_cosim.tasking.triggers import Driving, Trigger
+from automotive_cosim.tasking.triggers import Trigger, driving
 
-ON_THE_WAY = Trigger(Driving(), for_s=3.0, within_s=60.0)
+ON_THE_WAY = Trigger(driving(), for_s=3.0, within_s=60.0)
 COMFORT = Deadline(30.0, "a wish for comfort: the driver would reach for the knob within half a minute")
 ERRAND = Deadline(60.0, "an errand on the screen: a passenger would have it done within a minute")
 

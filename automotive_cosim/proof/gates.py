@@ -74,20 +74,12 @@ from automotive_cosim.proof.knowledge import DrawnValues, unknown
 from automotive_cosim.proof.place import mistagged
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking.binding import rules_of
-from automotive_cosim.tasking.checks import AlertGiven, Check, NothingDone
+from automotive_cosim.tasking.checks import AlertGiven, Check, nothing_done
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Consult, Move
 from automotive_cosim.tasking.parameters import FromCockpit
 from automotive_cosim.tasking.task import Basis, Differs, Half, Task
-from automotive_cosim.tasking.triggers import (
-    All,
-    InSchoolZone,
-    InTunnel,
-    Not,
-    Parked,
-    Standing,
-    TriggerCondition,
-)
+from automotive_cosim.tasking.triggers import All, Not, Situation, TriggerCondition
 from automotive_cosim.tasking.verdict import judge, may_part
 from automotive_cosim.traffic.fork import Simulations
 
@@ -537,8 +529,10 @@ def _spots(condition: TriggerCondition) -> Iterator[TriggerCondition]:
     if isinstance(condition, All):
         for part in condition.conditions:
             yield from _spots(part)
-    elif isinstance(condition.condition if isinstance(condition, Not) else condition, InTunnel | InSchoolZone):
-        yield condition
+        return
+    match condition.condition if isinstance(condition, Not) else condition:
+        case Situation("in_tunnel" | "in_school_zone"):
+            yield condition
 
 
 def place(grounds: dict[str, Ground]) -> Wrong:
@@ -567,7 +561,7 @@ def leak(ground: Ground, simulations: Simulations) -> Wrong:
 def _bare(half: Half) -> Half:
     return replace(
         half,
-        goal=NothingDone(),
+        goal=nothing_done(),
         moves=(),
         ways=(),
         basis=Basis.WISH,
@@ -608,7 +602,7 @@ def _stands(condition: TriggerCondition) -> bool:
     """Whether it holds only for a stationary car."""
     if isinstance(condition, All):
         return any(map(_stands, condition.conditions))
-    return isinstance(condition, Parked | Standing)
+    return isinstance(condition, Situation) and condition.name in ("parked", "standing")
 
 
 def repeat(ground: Ground, simulations: Simulations) -> Wrong:

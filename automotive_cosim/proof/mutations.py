@@ -9,7 +9,7 @@ from typing import Any
 from automotive_cosim.cockpit.signals import ACTUATORS, Signal, named
 from automotive_cosim.contracts import Hazards, PullOver, RoadRequest
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.tasking.checks import Check
+from automotive_cosim.tasking.checks import Check, NamedCheck
 from automotive_cosim.tasking.effects import EFFECTS
 from automotive_cosim.tasking.task import Half
 
@@ -56,7 +56,7 @@ def put(moments: Sequence[Moment], values: Mapping[str, Any]) -> tuple[Moment, .
 
 def _by_effect(goal: Check) -> frozenset[str]:
     """The commands of which only the effect counts: another one that has it is no miss."""
-    if isinstance(goal, EFFECTS):
+    if isinstance(goal, NamedCheck) and goal.name in EFFECTS:
         return goal.writes
     return frozenset().union(*map(_by_effect, getattr(goal, "checks", ())))
 

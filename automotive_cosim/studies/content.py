@@ -18,7 +18,7 @@ from automotive_cosim.report.templates import render
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import cannot_write, read_manifest, read_rows
 from automotive_cosim.studies.plan import plan_of
-from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, RerouteSettings
+from automotive_cosim.studies.settings import HOME, NETWORKS, RerouteSettings
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,14 +80,8 @@ class ShownStudy:
     """By name."""
 
 
-CONTENTS = {
-    RerouteSettings.kind: ("reroute.results:Study", ""),
-    CongestionSettings.kind: ("congestion.results:CongestionStudy", "congestion.page:shown"),
-    AdoptionSettings.kind: ("adoption.adoption:AdoptionStudy", "adoption.page:shown"),
-    DaysSettings.kind: ("days.days:DaysStudy", "days.page:shown"),
-}
-"""The content of each kind of study, and what its report shows unless it has pages of its own; beneath
-``automotive_cosim.studies``."""
+REROUTE = "reroute.results:Study"
+"""What reads a rerouting study."""
 
 
 def load_study(folder: Path | str) -> pd.DataFrame:
@@ -113,7 +107,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
 
 def _lines(folder: Path) -> list[Json]:
     kind = read_manifest(folder)["plan"].get("study")
-    if kind not in CONTENTS:
+    if kind not in (RerouteSettings.kind, *NETWORKS):
         raise UserError(f"{folder} is no study; automotive_cosim.load_results reads evaluations")
     return list(read_study(folder, kind).lines())
 
@@ -124,13 +118,15 @@ def read_study(folder: Path, kind: str) -> StudyContent[Any, Any]:
     Raises:
         UserError: it is not such a study's folder, or is damaged.
     """
-    content: type[StudyContent[Any, Any]] = _resolved(CONTENTS[kind][0])
+    content: type[StudyContent[Any, Any]] = resolve_name(
+        f"{HOME}.{NETWORKS[kind][0] if kind in NETWORKS else REROUTE}"
+    )
     return content.read(folder)
 
 
 def shown_of(study: StudyContent[Any, Any]) -> ShownStudy:
     """What the report of a study of a whole network shows."""
-    shown: ShownStudy = _resolved(CONTENTS[study.plan.kind][1])(study)
+    shown: ShownStudy = resolve_name(f"{HOME}.{NETWORKS[study.plan.kind][1]}")(study)
     return shown
 
 
@@ -143,10 +139,6 @@ def write_report(folder: Path) -> Path:
     """
     study = read_study(folder, read_manifest(folder)["plan"]["study"])
     return write_shown(study, shown_of(study))
-
-
-def _resolved(name: str) -> Any:
-    return resolve_name(f"automotive_cosim.studies.{name}")
 
 
 def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:

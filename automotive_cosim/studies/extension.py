@@ -7,9 +7,7 @@ from collections.abc import Mapping
 import typer
 
 from automotive_cosim.run.extensions import ResultsKind
-from automotive_cosim.studies.settings import AdoptionSettings, CongestionSettings, DaysSettings, RerouteSettings
-
-HOME = "automotive_cosim.studies"
+from automotive_cosim.studies.settings import HOME, NETWORKS, RerouteSettings
 
 
 def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
@@ -31,7 +29,5 @@ KINDS = {
         f"{HOME}.reroute.decisions:attributed",
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
-    CongestionSettings.kind: ResultsKind(f"{HOME}.content:write_report", "seed"),
-    AdoptionSettings.kind: ResultsKind(f"{HOME}.content:write_report", "seed"),
-    DaysSettings.kind: ResultsKind(f"{HOME}.content:write_report", "share of a seed"),
+    **{kind: ResultsKind(f"{HOME}.content:write_report", unit) for kind, (_, _, unit) in NETWORKS.items()},
 }

@@ -192,3 +192,12 @@ class DaysSettings(TrafficSettings):
     """Most days to drive after the first."""
     minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0
     """How long after the warm-up departures count."""
+
+
+HOME = "automotive_cosim.studies"
+NETWORKS = {
+    CongestionSettings.kind: ("congestion.results:CongestionStudy", "congestion.page:shown", "seed"),
+    AdoptionSettings.kind: ("adoption.adoption:AdoptionStudy", "adoption.page:shown", "seed"),
+    DaysSettings.kind: ("days.days:DaysStudy", "days.page:shown", "share of a seed"),
+}
+"""Studies of a whole network: what reads the folder, what its report shows, and what a row is about."""

@@ -16,23 +16,9 @@ from automotive_cosim.geo.place import Atlas, shipped
 from automotive_cosim.geo.rules import TOPICS, Rule, Status, Value
 from automotive_cosim.geo.text import KM_PER_MILE, amount_of_speed
 from automotive_cosim.tasking.task import Basis, Half
-from automotive_cosim.tasking.triggers import (
-    All,
-    InSchoolZone,
-    InTunnel,
-    Lanes,
-    LowerLimitWithin,
-    Not,
-    OnRoadClass,
-    OnStreet,
-    OverPosted,
-    SpeedAbove,
-    TriggerCondition,
-    TunnelOnRoute,
-    TunnelWithin,
-)
+from automotive_cosim.tasking.triggers import All, Not, Situation, TriggerCondition
 
-ABOUT_SIGNS = (SpeedAbove, OverPosted, LowerLimitWithin, InSchoolZone)
+ABOUT_SIGNS = frozenset(("speed_above", "over_posted", "lower_limit_within", "in_school_zone"))
 """Conditions on a posted limit."""
 
 
@@ -74,7 +60,8 @@ def bound(half: Half, context: GeoContext) -> str:
 
 def _about_signs(half: Half) -> bool:
     return half.basis is Basis.POSTED and any(
-        isinstance(condition, ABOUT_SIGNS) for condition in _parts(half.trigger.condition)
+        isinstance(condition, Situation) and condition.name in ABOUT_SIGNS
+        for condition in _parts(half.trigger.condition)
     )
 
 
@@ -105,19 +92,19 @@ def never_here(half: Half, roads: Sequence[Road]) -> str:
 def _may_hold(condition: TriggerCondition, road: Road) -> bool:
     limit_mps = road.limit_mps if road.limit_source is LimitSource.POSTED else None
     match condition:
-        case InTunnel() | TunnelWithin() | TunnelOnRoute():
+        case Situation("in_tunnel" | "tunnel_within" | "tunnel_on_route"):
             return road.in_tunnel
-        case OnRoadClass(classes):
-            return road.road_class in classes
-        case OnStreet(name):
-            return road.name == name
-        case Lanes(count):
-            return road.lane_count >= count
-        case InSchoolZone():
+        case Situation("on_road_class", (classes,)):
+            return bool(road.road_class in classes)
+        case Situation("on_street", (name,)):
+            return bool(road.name == name)
+        case Situation("lanes", (count,)):
+            return bool(road.lane_count >= count)
+        case Situation("in_school_zone"):
             return road.school_zone
-        case OverPosted():
+        case Situation("over_posted"):
             return limit_mps is not None
-        case SpeedAbove(_, from_kmh, to_kmh):
+        case Situation("speed_above", (_, from_kmh, to_kmh)):
             return limit_mps is not None and from_kmh <= round(limit_mps * KMH_PER_MPS, 1) <= to_kmh
         case _:
             return True

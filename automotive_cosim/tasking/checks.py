@@ -1,21 +1,23 @@
 """Checks: goals as predicates on the state, without effects.
 
-A ``Check`` judges the outcome of the situation that a trigger (``triggers``) started. Each is a frozen dataclass,
-so it can be compared and stored; ``str`` describes it in words. Values may be parameters until they are bound.
+A ``Check`` judges the outcome of the situation that a trigger (``triggers``) started. It can be compared and
+stored; ``str`` describes it in words. Values may be parameters until they are bound. A new one is a function, by
+whose name tasks ask for it; those are classes that something else looks into.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Concatenate, ParamSpec, Protocol
 
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA, Signal
 from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.dialogue import Topic, questions
+from automotive_cosim.tasking.named import ROWS, Named, Wording, keep
 
 
 class Check(Protocol):
@@ -34,14 +36,14 @@ class Check(Protocol):
 NUMBER = re.compile(r"(\d+):(\d\d)|\d+(?:\.\d+)?")
 """A time of day or a number."""
 
-T = TypeVar("T")
+P = ParamSpec("P")
 
 
 @dataclass(frozen=True, slots=True)
-class _OfSignal(Generic[T]):
+class _OfSignal:
     """Common part of the checks of one signal."""
 
-    signal: Signal[T]
+    signal: Signal[Any]
 
     @property
     def writes(self) -> frozenset[str]:
@@ -49,18 +51,38 @@ class _OfSignal(Generic[T]):
 
 
 @dataclass(frozen=True, slots=True)
-class _OfData:
-    """Common part of the checks of one entry of ``Moment.commands``."""
-
-    key: str
+class NamedCheck(Named):
+    """A check with its values."""
 
     @property
     def writes(self) -> frozenset[str]:
-        return frozenset({self.key})
+        return ROWS[self.name].writes(*self.values)
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return ROWS[self.name].holds(start, now, trace, *self.values)
+
+
+def _its_key(key: str, *others: object) -> frozenset[str]:
+    return frozenset({key})
+
+
+def _its_path(signal: Signal[Any], *others: object) -> frozenset[str]:
+    return frozenset({signal.path})
+
+
+def goal(
+    words: Wording, writes: Callable[..., frozenset[str]] = _its_key
+) -> Callable[[Callable[Concatenate[Moment, Moment, Sequence[Moment], P], bool]], Callable[P, NamedCheck]]:
+    """Makes a check of a predicate, which then takes its values and gives the ``NamedCheck`` with them.
+
+    Args:
+        writes: of the values; without it, the first of them.
+    """
+    return lambda holds: keep(NamedCheck, holds, 3, words, writes)
 
 
 @dataclass(frozen=True, slots=True)
-class SignalIs(_OfSignal[Any]):
+class SignalIs(_OfSignal):
     """A signal has one of these values."""
 
     values: tuple[Any, ...]
@@ -72,34 +94,20 @@ class SignalIs(_OfSignal[Any]):
         return f"{self.signal} is {_either(self.values)}"
 
 
-@dataclass(frozen=True, slots=True)
-class SignalRaised(_OfSignal[float]):
+@goal("{signal} raised by {by:g} or more", writes=_its_path)
+def signal_raised(start: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[float], by: float) -> bool:
     """A numeric signal is at least ``by`` above its value at the start."""
-
-    by: float
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return float(now.signals[self.signal.path]) - float(start.signals[self.signal.path]) >= self.by
-
-    def __str__(self) -> str:
-        return f"{self.signal} raised by {self.by:g} or more"
+    return float(now.signals[signal.path]) - float(start.signals[signal.path]) >= by
 
 
-@dataclass(frozen=True, slots=True)
-class SignalLowered(_OfSignal[float]):
+@goal("{signal} lowered by {by:g} or more", writes=_its_path)
+def signal_lowered(start: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[float], by: float) -> bool:
     """A numeric signal is at least ``by`` below its value at the start."""
-
-    by: float
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return float(start.signals[self.signal.path]) - float(now.signals[self.signal.path]) >= self.by
-
-    def __str__(self) -> str:
-        return f"{self.signal} lowered by {self.by:g} or more"
+    return float(start.signals[signal.path]) - float(now.signals[signal.path]) >= by
 
 
 @dataclass(frozen=True, slots=True)
-class SignalWithin(_OfSignal[float]):
+class SignalWithin(_OfSignal):
     """A numeric signal lies between two values, both included."""
 
     low: float
@@ -112,22 +120,22 @@ class SignalWithin(_OfSignal[float]):
         return f"{self.signal} from {self.low:g} to {self.high:g}"
 
 
-@dataclass(frozen=True, slots=True)
-class SignalChanged(_OfSignal[Any]):
+@goal("{signal} is no longer what it was", writes=_its_path)
+def signal_changed(start: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[Any]) -> bool:
     """A signal has any other value than at the start."""
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return bool(now.signals[self.signal.path] != start.signals[self.signal.path])
-
-    def __str__(self) -> str:
-        return f"{self.signal} is no longer what it was"
+    return bool(now.signals[signal.path] != start.signals[signal.path])
 
 
 @dataclass(frozen=True, slots=True)
-class AppDataIs(_OfData):
+class AppDataIs:
     """An entry of the apps' data (``State.commands``) has one of these values."""
 
+    key: str
     values: tuple[Any, ...]
+
+    @property
+    def writes(self) -> frozenset[str]:
+        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         return now.commands[self.key] in self.values
@@ -136,262 +144,173 @@ class AppDataIs(_OfData):
         return f"{self.key} is {_either(self.values)}"
 
 
-@dataclass(frozen=True, slots=True)
-class AppDataHas(_OfData):
+@goal(lambda key, entry, there: f"{entry!r} {'among' if there else 'no longer among'} {key}")
+def app_data_has(
+    start: Moment, now: Moment, trace: Sequence[Moment], key: str, entry: Any, there: bool = True
+) -> bool:
     """A list of the apps' data contains that entry, or no longer does; the rest of it is unchanged."""
-
-    entry: Any
-    there: bool = True
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the entry is there, or gone, and the rest is unchanged."""
-        before, after = start.commands[self.key], now.commands[self.key]
-        same = [entry for entry in before if entry != self.entry] == [
-            entry for entry in after if entry != self.entry
-        ]
-        return same and (self.entry in after) is self.there
-
-    def __str__(self) -> str:
-        return f"{self.entry!r} {'among' if self.there else 'no longer among'} {self.key}"
+    before, after = start.commands[key], now.commands[key]
+    same = [each for each in before if each != entry] == [each for each in after if each != entry]
+    return same and (entry in after) is there
 
 
-@dataclass(frozen=True, slots=True)
-class Filed(_OfData):
+@goal(lambda key, name, entry, there: f"{entry!r} {'among' if there else 'no longer among'} {key} {name}")
+def filed(
+    start: Moment, now: Moment, trace: Sequence[Moment], key: str, name: str, entry: Any, there: bool = True
+) -> bool:
     """One of several named lists (playlists) contains that entry, or no longer does; the others are unchanged."""
-
-    name: str
-    entry: Any
-    there: bool = True
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the entry is there, or gone, and the rest is unchanged."""
-        before, after = dict(start.commands[self.key]), dict(now.commands[self.key])
-        was, is_now = before.pop(self.name, []), after.pop(self.name, [])
-        same = [entry for entry in was if entry != self.entry] == [entry for entry in is_now if entry != self.entry]
-        return before == after and same and (self.entry in is_now) is self.there
-
-    def __str__(self) -> str:
-        return f"{self.entry!r} {'among' if self.there else 'no longer among'} {self.key} {self.name}"
+    before, after = dict(start.commands[key]), dict(now.commands[key])
+    was, is_now = before.pop(name, []), after.pop(name, [])
+    same = [each for each in was if each != entry] == [each for each in is_now if each != entry]
+    return before == after and same and (entry in is_now) is there
 
 
-@dataclass(frozen=True, slots=True)
-class Entered(_OfData):
+@goal(lambda key, entry: f"one entry added to {key}" + ("" if entry is None else f": {entry!r}"))
+def entered(start: Moment, now: Moment, trace: Sequence[Moment], key: str, entry: Any = None) -> bool:
     """Exactly one entry was added to a list that only grows (messages sent, calls, payments, memos), and with
     ``entry`` it is that one. If an entry is a mapping, only the fields named in ``entry`` count."""
-
-    entry: Any = None
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        added = now.commands[self.key][len(start.commands[self.key]) :]
-        if len(added) != 1 or self.entry is None:
-            return len(added) == 1
-        if isinstance(self.entry, dict):
-            return all(added[0].get(name) == value for name, value in self.entry.items())
-        return bool(added[0] == self.entry)
-
-    def __str__(self) -> str:
-        return f"one entry added to {self.key}" + ("" if self.entry is None else f": {self.entry!r}")
+    added = now.commands[key][len(start.commands[key]) :]
+    if len(added) != 1 or entry is None:
+        return len(added) == 1
+    if isinstance(entry, dict):
+        return all(added[0].get(name) == value for name, value in entry.items())
+    return bool(added[0] == entry)
 
 
-@dataclass(frozen=True, slots=True)
-class EnteredOf(_OfData):
+@goal("{signal}, as it was, added to {key}")
+def entered_of(start: Moment, now: Moment, trace: Sequence[Moment], key: str, signal: Signal[str]) -> bool:
     """Exactly one entry was added to a list that only grows: the signal's value at the start, e.g. who rang."""
-
-    signal: Signal[str]
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        added = now.commands[self.key][len(start.commands[self.key]) :]
-        return bool(added == [start.signals[self.signal.path]])
-
-    def __str__(self) -> str:
-        return f"{self.signal}, as it was, added to {self.key}"
+    added = now.commands[key][len(start.commands[key]) :]
+    return bool(added == [start.signals[signal.path]])
 
 
-@dataclass(frozen=True, slots=True)
-class Counted(_OfData):
+@goal("{key} {by} higher")
+def counted(start: Moment, now: Moment, trace: Sequence[Moment], key: str, by: int = 1) -> bool:
     """A counter (horn, washer, trip.resets) is higher than at the start by a number."""
-
-    by: int = 1
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return bool(now.commands[self.key] - start.commands[self.key] == self.by)
-
-    def __str__(self) -> str:
-        return f"{self.key} {self.by} higher"
+    return bool(now.commands[key] - start.commands[key] == by)
 
 
-@dataclass(frozen=True, slots=True)
-class SeatRecalled:
-    """Seat and mirrors stand as one of the driver's memories has them."""
-
-    slot: int
-    """Number of the memory, from 1."""
-
-    @property
-    def writes(self) -> frozenset[str]:
-        return frozenset(signal.path for signal in REMEMBERED)
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return self.is_so(now, now)
-
-    def is_so(self, memory: Moment, now: Moment) -> bool:
-        """Whether everything stands as that memory had it at one moment."""
-        stored = memory.commands["seat.memory"][self.slot - 1]
-        return all(now.signals[signal.path] == value for signal, value in zip(REMEMBERED, stored, strict=True))
-
-    def __str__(self) -> str:
-        return f"seat and mirrors as in memory {self.slot}"
+def _as_in_memory(memory: Moment, now: Moment, slot: int) -> bool:
+    """Whether everything stands as that memory had it at one moment."""
+    stored = memory.commands["seat.memory"][slot - 1]
+    return all(now.signals[signal.path] == value for signal, value in zip(REMEMBERED, stored, strict=True))
 
 
-@dataclass(frozen=True, slots=True)
-class EnteredAll(_OfData):
+def _remembered(slot: int) -> frozenset[str]:
+    return frozenset(signal.path for signal in REMEMBERED)
+
+
+@goal("seat and mirrors as in memory {slot}", writes=_remembered)
+def seat_recalled(start: Moment, now: Moment, trace: Sequence[Moment], slot: int) -> bool:
+    """Seat and mirrors stand as one of the driver's memories has them.
+
+    Args:
+        slot: number of the memory, from 1.
+    """
+    return _as_in_memory(now, now, slot)
+
+
+@goal(lambda key, entries, in_order: f"added to {key}{', in this order' if in_order else ''}: {entries!r}")
+def entered_all(
+    start: Moment, now: Moment, trace: Sequence[Moment], key: str, entries: tuple[Any, ...], in_order: bool = False
+) -> bool:
     """Exactly these entries were added to a list (messages sent, calls, saved places), in this order or in any."""
-
-    entries: tuple[Any, ...]
-    in_order: bool = False
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        added = list(now.commands[self.key][len(start.commands[self.key]) :])
-        if self.in_order or len(added) != len(self.entries):
-            return added == list(self.entries)
-        return all(added.count(entry) == self.entries.count(entry) for entry in self.entries)
-
-    def __str__(self) -> str:
-        return f"added to {self.key}{', in this order' if self.in_order else ''}: {self.entries!r}"
+    added = list(now.commands[key][len(start.commands[key]) :])
+    if in_order or len(added) != len(entries):
+        return added == list(entries)
+    return all(added.count(entry) == entries.count(entry) for entry in entries)
 
 
-@dataclass(frozen=True, slots=True)
-class AppDataIncludes(_OfData):
+@goal(lambda key, entries: f"{' and '.join(map(repr, entries))} among {key}")
+def app_data_includes(
+    start: Moment, now: Moment, trace: Sequence[Moment], key: str, entries: tuple[Any, ...]
+) -> bool:
     """A list of the apps' data (messages read) contains all of these entries, whatever else it contains."""
-
-    entries: tuple[Any, ...]
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return all(entry in now.commands[self.key] for entry in self.entries)
-
-    def __str__(self) -> str:
-        return f"{' and '.join(map(repr, self.entries))} among {self.key}"
+    return all(entry in now.commands[key] for entry in entries)
 
 
-@dataclass(frozen=True, slots=True)
-class SaysFigure:
-    """Exactly one message was sent, to that person, with these words and one figure, to a tolerance."""
+@goal(
+    "a message to {to} with {figure} (to {tolerance:g}) and {words!r}",
+    writes=lambda *values: frozenset({"messages.sent"}),
+)
+def says_figure(
+    start: Moment, now: Moment, trace: Sequence[Moment], to: str, words: str, figure: float, tolerance: float
+) -> bool:
+    """Exactly one message was sent, to that person, with these words and one figure, to a tolerance.
 
-    to: str
-    words: str
-    """What the message has to contain besides, such as a unit."""
-    figure: float
-    """A number; for a time of day the minutes since midnight."""
-    tolerance: float
-
-    @property
-    def writes(self) -> frozenset[str]:
-        return frozenset({"messages.sent"})
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether that message is the only one since the start."""
-        key = "messages.sent"
-        added = now.commands[key][len(start.commands[key]) :]
-        if len(added) != 1 or added[0]["to"] != self.to or self.words not in added[0]["text"]:
-            return False
-        said = NUMBER.search(added[0]["text"])
-        return said is not None and abs(_value(said) - self.figure) <= self.tolerance + 1e-9
-
-    def __str__(self) -> str:
-        return f"a message to {self.to} with {self.figure} (to {self.tolerance:g}) and {self.words!r}"
+    Args:
+        words: what the message has to contain besides, such as a unit.
+        figure: a number; for a time of day the minutes since midnight.
+    """
+    key = "messages.sent"
+    added = now.commands[key][len(start.commands[key]) :]
+    if len(added) != 1 or added[0]["to"] != to or words not in added[0]["text"]:
+        return False
+    said = NUMBER.search(added[0]["text"])
+    return said is not None and abs(_value(said) - figure) <= tolerance + 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class AppDataAt(_OfData):
+@goal(lambda key, place, value: f"entry {place + 1} of {key} is {value!r}")
+def app_data_at(start: Moment, now: Moment, trace: Sequence[Moment], key: str, place: int, value: Any) -> bool:
     """One place of a list in the apps' data has a value; the others are unchanged."""
-
-    place: int
-    value: Any
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        wanted = list(start.commands[self.key])
-        value = list(self.value) if isinstance(self.value, tuple) else self.value
-        wanted[self.place] = {**wanted[self.place], **value} if isinstance(value, Mapping) else value
-        return bool(now.commands[self.key] == wanted)
-
-    def __str__(self) -> str:
-        return f"entry {self.place + 1} of {self.key} is {self.value!r}"
+    wanted = list(start.commands[key])
+    value = list(value) if isinstance(value, tuple) else value
+    wanted[place] = {**wanted[place], **value} if isinstance(value, Mapping) else value
+    return bool(now.commands[key] == wanted)
 
 
-@dataclass(frozen=True, slots=True)
-class AppDataWithout(_OfData):
+@goal(lambda key, place: f"entry {place + 1} of {key} is gone")
+def app_data_without(start: Moment, now: Moment, trace: Sequence[Moment], key: str, place: int) -> bool:
     """One place of a list in the apps' data is gone; the others are unchanged."""
-
-    place: int
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        wanted = list(start.commands[self.key])
-        del wanted[self.place]
-        return bool(now.commands[self.key] == wanted)
-
-    def __str__(self) -> str:
-        return f"entry {self.place + 1} of {self.key} is gone"
+    wanted = list(start.commands[key])
+    del wanted[place]
+    return bool(now.commands[key] == wanted)
 
 
-@dataclass(frozen=True, slots=True)
-class SeatAsStored(SeatRecalled):
+@goal("seat and mirrors as stored in place {slot}", writes=_remembered)
+def seat_as_stored(start: Moment, now: Moment, trace: Sequence[Moment], slot: int) -> bool:
     """Seat and mirrors stand as a memory place has them since the start."""
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return self.is_so(start, now)
-
-    def __str__(self) -> str:
-        return f"seat and mirrors as stored in place {self.slot}"
+    return _as_in_memory(start, now, slot)
 
 
 REQUEST_WORDS = {Reroute: "reroute", PullOver: "pull-over", SlowDown: "slow-down"}
 
 
-@dataclass(frozen=True, slots=True)
-class RoadAsked:
-    """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``."""
-
-    request: type[RoadRequest] | RoadRequest
-    """A class or an exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` one."""
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The key of the requests, and of the destination if one is asked for."""
-        sets_out = isinstance(self.request, Reroute) and bool(self.request.destination)
-        return frozenset({"requests", "navigation.destination"} if sets_out else {"requests"})
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        asked = now.commands["requests"][len(start.commands["requests"]) :]
-        if len(asked) != 1:
-            return False
-        return isinstance(asked[0], self.request) if isinstance(self.request, type) else asked[0] == self.request
-
-    def __str__(self) -> str:
-        if isinstance(self.request, Reroute) and self.request.destination:
-            return f"exactly one reroute request, to {self.request.destination}"
-        wanted = self.request if isinstance(self.request, type) else type(self.request)
-        return f"exactly one {REQUEST_WORDS.get(wanted, wanted.__name__)} request"
+def _road_asked(request: type[RoadRequest] | RoadRequest) -> str:
+    if isinstance(request, Reroute) and request.destination:
+        return f"exactly one reroute request, to {request.destination}"
+    wanted = request if isinstance(request, type) else type(request)
+    return f"exactly one {REQUEST_WORDS.get(wanted, wanted.__name__)} request"
 
 
-@dataclass(frozen=True, slots=True)
-class AskedFirst:
+def _road_asked_writes(request: type[RoadRequest] | RoadRequest) -> frozenset[str]:
+    sets_out = isinstance(request, Reroute) and bool(request.destination)
+    return frozenset({"requests", "navigation.destination"} if sets_out else {"requests"})
+
+
+@goal(_road_asked, writes=_road_asked_writes)
+def road_asked(
+    start: Moment, now: Moment, trace: Sequence[Moment], request: type[RoadRequest] | RoadRequest
+) -> bool:
+    """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``.
+
+    Args:
+        request: a class or an exact request: ``road_asked(Reroute)`` accepts any, ``road_asked(Reroute("A 4"))``
+            that one.
+    """
+    asked = now.commands["requests"][len(start.commands["requests"]) :]
+    if len(asked) != 1:
+        return False
+    return isinstance(asked[0], request) if isinstance(request, type) else asked[0] == request
+
+
+@goal("the driver asked once, and first, about {topic.name}", writes=lambda topic: frozenset({"questions"}))
+def asked_first(start: Moment, now: Moment, trace: Sequence[Moment], topic: Topic) -> bool:
     """The driver was asked exactly once, before anything was changed, and the question names every alternative."""
-
-    topic: Topic
-
-    @property
-    def writes(self) -> frozenset[str]:
-        return frozenset({"questions"})
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether that was the only question, and came first."""
-        asked = questions(start, now)
-        if len(asked) != 1 or asked[0]["commands"]:
-            return False
-        return self.topic.named(asked[0]["text"]) == len(self.topic.choices)
-
-    def __str__(self) -> str:
-        return f"the driver asked once, and first, about {self.topic.name}"
+    asked = questions(start, now)
+    if len(asked) != 1 or asked[0]["commands"]:
+        return False
+    return topic.named(asked[0]["text"]) == len(topic.choices)
 
 
 QUIETING = frozenset(
@@ -411,48 +330,30 @@ QUIETING = frozenset(
 """What makes the cabin quieter, and may be changed before a question."""
 
 
-@dataclass(frozen=True, slots=True)
-class AskedBack:
+@goal(
+    "the driver asked back about {topic.name}, before anything but the noise was changed",
+    writes=lambda topic: frozenset(),  # it may be asked again: the answer, too, has to be heard
+)
+def asked_back(start: Moment, now: Moment, trace: Sequence[Moment], topic: Topic) -> bool:
     """The driver was asked about it, or to say it again, before anything but the noise was changed."""
-
-    topic: Topic
-
-    @property
-    def writes(self) -> frozenset[str]:
-        return frozenset()  # it may be asked again: the answer, too, has to be heard
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the first moment after such a question is as the start but for the noise."""
-        for count, asked in enumerate(questions(start, now), start=1):
-            if self.topic.fits(asked["text"]):
-                then = next(moment for moment in trace if len(questions(start, moment)) >= count)
-                changed = {key for key, value in then.commands.items() if value != start.commands.get(key)}
-                return changed <= QUIETING | {"questions"}
-        return False
-
-    def __str__(self) -> str:
-        return f"the driver asked back about {self.topic.name}, before anything but the noise was changed"
+    for count, asked in enumerate(questions(start, now), start=1):
+        if topic.fits(asked["text"]):
+            then = next(moment for moment in trace if len(questions(start, moment)) >= count)
+            changed = {key for key, value in then.commands.items() if value != start.commands.get(key)}
+            return changed <= QUIETING | {"questions"}
+    return False
 
 
-@dataclass(frozen=True, slots=True)
-class NotAsked:
+@goal("the driver not asked", writes=frozenset)
+def not_asked(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
     """The driver was not asked anything: what he wants can be found out."""
-
-    @property
-    def writes(self) -> frozenset[str]:
-        return frozenset()
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return not questions(start, now)
-
-    def __str__(self) -> str:
-        return "the driver not asked"
+    return not questions(start, now)
 
 
 def asked_in(check: Check) -> Iterator[Topic]:
     """The topics of a goal that the driver has to be asked about."""
-    if isinstance(check, AskedFirst | AskedBack):
-        yield check.topic
+    if isinstance(check, NamedCheck) and check.name in ("asked_first", "asked_back"):
+        yield check.values[0]
     for part in getattr(check, "checks", ()):
         yield from asked_in(part)
 
@@ -530,19 +431,14 @@ class AnyOf:
         return ", or ".join(map(str, self.checks))
 
 
-@dataclass(frozen=True, slots=True)
-class NothingDone:
+@goal("nothing to do", writes=frozenset)
+def nothing_done(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
     """The right act is to leave everything as it is; that nothing else changed is the verdict's *clean* part."""
+    return True
 
-    @property
-    def writes(self) -> frozenset[str]:
-        return frozenset()
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return True
-
-    def __str__(self) -> str:
-        return "nothing to do"
+CLASSES = (AppDataIs, AlertGiven)
+"""Checks that tasks name like the others."""
 
 
 def _either(values: object) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.cabin import FOG_OPAQUE, Air, Cabin, CabinStart, Pane
+from automotive_cosim.cockpit.cabin import FOG_OPAQUE, Air, Cabin, CabinStart
 from automotive_cosim.cockpit.signals import GLASS, HVAC, OUTSIDE, Signals
 from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.checks import goal
 
 AHEAD_S = 60.0
 """How far ahead the cabin is forecast: a minute in which somebody who is cold would notice a difference."""
@@ -31,49 +32,31 @@ HEATING = frozenset(
 """What may be commanded to warm or dry the air."""
 
 
-@dataclass(frozen=True, slots=True)
-class CabinWarmer:
+@goal("the cabin {by_k:g} K warmer in a minute than with the settings of the start", writes=lambda *values: HEATING)
+def cabin_warmer(start: Moment, now: Moment, trace: Sequence[Moment], by_k: float) -> bool:
     """In a minute the air of the cabin is warmer by some kelvins than with the settings of the start."""
-
-    by_k: float
-
-    @property
-    def writes(self) -> frozenset[str]:
-        return HEATING
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, start))
-        return acted.temperature_c - idle.temperature_c >= self.by_k
-
-    def __str__(self) -> str:
-        return f"the cabin {self.by_k:g} K warmer in a minute than with the settings of the start"
+    acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, start))
+    return acted.temperature_c - idle.temperature_c >= by_k
 
 
-@dataclass(frozen=True, slots=True)
-class GlassClears:
-    """In a minute the fog on the inside of a pane is less than with the settings of the start, by a share."""
+@goal(
+    lambda rear, by: f"the {'rear window' if rear else 'windshield'} clearing, by {by:.0%} within a minute",
+    writes=lambda *values: HEATING,
+)
+def glass_clears(start: Moment, now: Moment, trace: Sequence[Moment], rear: bool, by: float) -> bool:
+    """In a minute the fog on the inside of a pane is less than with the settings of the start, by a share.
 
-    rear: bool
-    """The rear window, not the windshield."""
-    by: float
-    """Share of the road that the fog hides no longer, 0 to 1."""
-
-    @property
-    def writes(self) -> frozenset[str]:
-        return HEATING
-
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        acted, idle = (self._pane(_in_a_minute(settings.signals, now)) for settings in (now, start))
-        return idle.fog_inside - acted.fog_inside >= self.by
-
-    def _pane(self, cabin: Cabin) -> Pane:
-        return cabin.rear_window if self.rear else cabin.windshield
-
-    def __str__(self) -> str:
-        return f"the {'rear window' if self.rear else 'windshield'} clearing, by {self.by:.0%} within a minute"
+    Args:
+        rear: the rear window, not the windshield.
+        by: share of the road that the fog hides no longer, 0 to 1.
+    """
+    acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, start))
+    if rear:
+        return idle.rear_window.fog_inside - acted.rear_window.fog_inside >= by
+    return idle.windshield.fog_inside - acted.windshield.fog_inside >= by
 
 
-EFFECTS = (CabinWarmer, GlassClears)
+EFFECTS = frozenset(("cabin_warmer", "glass_clears"))
 """Checks of an effect: whatever brings it about is right."""
 
 

@@ -15,7 +15,8 @@ Conditions are joined by ``and``, ``or``, ``not`` and brackets:
     GLASS.WINDSHIELD_FOG > 0.3 and driving and not in_tunnel              of triggers alone
     alert_given(speed, 50) and entered(messages.sent, {to: "Bea", text: "Yes"})
 
-Every other condition is the name of its class in small letters, with its fields in brackets, in order or by name.
+Every other condition is the name of its function or class in small letters, with its values in brackets, in order
+or by name.
 ``{name}`` stands for a drawn value, ``{name.column}`` for what it means (``reading``); texts are in double quotes.
 """
 
@@ -26,7 +27,6 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
-from types import ModuleType
 from typing import Any, get_type_hints
 
 from automotive_cosim.cockpit import signals
@@ -48,8 +48,16 @@ from automotive_cosim.tasking.moves import (
     TypeText,
     Warn,
 )
+from automotive_cosim.tasking.named import ROWS
 from automotive_cosim.tasking.parameters import Param
-from automotive_cosim.tasking.triggers import All, Not, SignalAbove, SignalBelow, SignalHas
+from automotive_cosim.tasking.triggers import (
+    All,
+    Not,
+    Situation,
+    signal_above,
+    signal_below,
+    signal_has,
+)
 
 LONGEST_WAIT_S = 10
 """The longest wait of one action; longer ones are several."""
@@ -473,7 +481,7 @@ class _Goals(_Reader):
             return AppDataIs(subject, tuple(self.decode(value, Any) for value in values))
         return SignalIs(subject, tuple(of_signal(subject, value, self.decode) for value in values))
 
-    def _made(self, kind: type[Any]) -> Any:
+    def _made(self, kind: Callable[..., Any]) -> Any:
         """A condition with its fields in brackets."""
         known, given = hints(kind), dict[str, Any]()
         if self.takes("(", "sign"):
@@ -489,11 +497,7 @@ class _Goals(_Reader):
                 else:
                     raise UserError(f"{named_as(kind)} has {len(names)} fields: {', '.join(names)}")
                 given[name] = self._field(known[name])
-        lacking = [
-            each.name
-            for each in fields(kind)
-            if each.default is MISSING and each.default_factory is MISSING and each.name not in given
-        ]
+        lacking = [each for each in needed(kind) if each not in given]
         if lacking:
             raise UserError(f"{named_as(kind)} lacks {', '.join(lacking)}")
         return kind(**given)
@@ -519,37 +523,46 @@ class _Conditions(_Goals):
     denied = Not
 
     def _compared(self, subject: Any, sign: str) -> Any:
-        kinds: Mapping[str, type[Any]] = {"=": SignalHas, ">": SignalAbove, "<": SignalBelow}
+        kinds: Mapping[str, Callable[..., Situation]] = {"=": signal_has, ">": signal_above, "<": signal_below}
         if sign not in kinds or isinstance(subject, str):
             raise UserError(f"only a signal is compared here, by =, < or >; found {subject} {sign}")
         return kinds[sign](subject, of_signal(subject, self.value(), self.decode))
 
 
+SIGNS = ("signal_has", "signal_above", "signal_below")
+"""Conditions that are written as =, > and <."""
+
+
 @cache
-def conditions_by_name(*, of_trigger: bool) -> Mapping[str, type[Any]]:
-    """The classes of conditions by their names in small letters, without those that have a sign or a word."""
-    written = {AllOf, AnyOf, SignalIs, SignalWithin, All, Not, SignalAbove, SignalBelow, SignalHas}
-    where: tuple[ModuleType, ...] = (triggers,) if of_trigger else (checks, effects, history)
-    asked = "__call__" if of_trigger else "holds"
-    found = (each for module in where for each in vars(module).values() if inspect.isclass(each))
+def conditions_by_name(*, of_trigger: bool) -> Mapping[str, Callable[..., Any]]:
+    """What makes each condition, by its name, without those that have a sign or a word."""
+    modules = {each.__name__ for each in ((triggers,) if of_trigger else (checks, effects, history))}
+    classes = () if of_trigger else checks.CLASSES
     return {
-        named_as(each): each
-        for each in found
-        if asked in vars(each) and each not in written and not getattr(each, "_is_protocol", False)
-    }
+        name: row.made for name, row in ROWS.items() if row.holds.__module__ in modules and name not in SIGNS
+    } | {named_as(each): each for each in classes}
 
 
-def named_as(kind: type[Any]) -> str:
-    """The name of a class in small letters."""
+def named_as(kind: Callable[..., Any]) -> str:
+    """The name of a class or function in small letters."""
     return _CASE.sub("_", kind.__name__).lower()
 
 
 def hints(kind: Any) -> Mapping[str, Any]:
-    """The types of a class's fields, by name, in order."""
+    """The types of a class's fields or of a condition's values, by name, in order."""
     return _hints(kind)
 
 
 @cache
 def _hints(kind: Any) -> Mapping[str, Any]:
     every = get_type_hints(kind, include_extras=True)
-    return {each.name: every[each.name] for each in fields(kind)}
+    row = ROWS.get(kind.__name__)
+    names = [each.name for each in fields(kind)] if row is None else row.values
+    return {name: every[name] for name in names}
+
+
+def needed(kind: Any) -> tuple[str, ...]:
+    """Those of them that have no default."""
+    if kind.__name__ in ROWS:
+        return ROWS[kind.__name__].needed
+    return tuple(each.name for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING)

@@ -18,7 +18,7 @@ import inspect
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from datetime import date, time
 from enum import Enum
 from functools import cache
@@ -37,7 +37,7 @@ from automotive_cosim.formats import bounds
 from automotive_cosim.formats.checked import Steps
 from automotive_cosim.formats.toml import Document
 from automotive_cosim.tasking import notation
-from automotive_cosim.tasking.checks import Check, NothingDone
+from automotive_cosim.tasking.checks import Check, nothing_done
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.notation import (
     PLACEHOLDER,
@@ -319,7 +319,7 @@ class _Reader:
         self._topics = made.get("topics", ())
         self.steps = (*steps, "start")
         made["start"] = self.decode(self.table(given["start"], {}), Start)
-        made["goal"] = self._at("goal", given["goal"], Check, *steps) if "goal" in given else NothingDone()
+        made["goal"] = self._at("goal", given["goal"], Check, *steps) if "goal" in given else nothing_done()
         self.steps = (*steps, "moves")
         moves = notation.moves(given.get("moves", ""), self.decode, () if first is None else first.moves)
         for name in ("ways", "slips"):
@@ -680,7 +680,7 @@ def _class(kind: type[Any]) -> _Decoder:
     decoders: Mapping[str, _Decoder] = {
         name: _SPECIAL.get((kind.__name__, name)) or _decoder(hint) for name, hint in hints(kind).items()
     }
-    needed = [each.name for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING]
+    needed = notation.needed(kind)
 
     def read(reader: _Reader, value: Any) -> Any:
         value = value if kind.__name__ == "Topic" and isinstance(value, Quoted) else reader.named(value)

@@ -17,10 +17,8 @@ from automotive_cosim.tasking.checks import (
     AnyOf,
     AppDataIs,
     Check,
-    SignalChanged,
+    NamedCheck,
     SignalIs,
-    SignalLowered,
-    SignalRaised,
     SignalWithin,
 )
 
@@ -148,15 +146,15 @@ def _lacks(check: Check, start: Moment, now: Moment, trace: Sequence[Moment]) ->
         case SignalIs(signal, values) | AppDataIs(signal, values):
             key = signal if isinstance(signal, str) else signal.path
             yield _is(key, now, " or ".join(told_value(key, value) for value in values))
-        case SignalRaised(signal, by):
+        case NamedCheck("signal_raised", (signal, by)):
             least = float(start.signals[signal.path]) + by
             yield _is(signal.path, now, f"{told_value(signal.path, least)} or more")
-        case SignalLowered(signal, by):
+        case NamedCheck("signal_lowered", (signal, by)):
             most = float(start.signals[signal.path]) - by
             yield _is(signal.path, now, f"{told_value(signal.path, most)} or less")
         case SignalWithin(signal, low, high):
             yield _is(signal.path, now, f"{told_value(signal.path, low)} to {told_value(signal.path, high)}")
-        case SignalChanged(signal):
+        case NamedCheck("signal_changed", (signal,)):
             yield f"{told(signal.path)} is still {told_value(signal.path, now.signals[signal.path])}"
         case AlertGiven():
             given = now.commands["alerts"][len(start.commands["alerts"]) :]

@@ -30,25 +30,25 @@ from automotive_cosim.tasking.checks import (
     AlertGiven,
     AllOf,
     AnyOf,
-    NothingDone,
-    RoadAsked,
     SignalIs,
-    SignalRaised,
+    nothing_done,
+    road_asked,
+    signal_raised,
 )
 from automotive_cosim.tasking.moves import Do, Open, Tap, Warn
 from automotive_cosim.tasking.task import Basis, Differs, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
-    Dark,
-    Driving,
-    InCountry,
-    InTunnel,
-    Lit,
     Not,
-    Parked,
-    SignalAbove,
-    Standing,
     Trigger,
+    dark,
+    driving,
+    in_country,
+    in_tunnel,
+    lit,
+    parked,
+    signal_above,
+    standing,
 )
 from automotive_cosim.tasks import CATALOGUE
 from tests.written import COMFORT, ON_THE_WAY, asked
@@ -197,7 +197,7 @@ def test_a_goal_that_takes_the_wrong_seat_is_seen(ground):
     assert any("PassengerSide" in wrong for wrong in gates.near(stand, stand.reference))
 
 
-@pytest.mark.parametrize(("goal", "wrong"), [(AnyRequest(), 1), (RoadAsked(PullOver), 0)], ids=["any", "that one"])
+@pytest.mark.parametrize(("goal", "wrong"), [(AnyRequest(), 1), (road_asked(PullOver), 0)], ids=["any", "that one"])
 def test_a_goal_that_takes_another_request_is_seen(ground, goal, wrong):
     stand = ground(changed(goal=goal, moves=(Open("safety"), Tap("safety.pull_over"))))
     assert list(gates.near(stand, stand.reference)) == ["succeeds with requests something else"] * wrong
@@ -206,10 +206,10 @@ def test_a_goal_that_takes_another_request_is_seen(ground, goal, wrong):
 @pytest.mark.parametrize(
     ("condition", "stands"),
     [
-        (Parked(), True),
-        (All((Dark(), All((Standing(), Lit())))), True),
-        (Not(Parked()), False),
-        (All((Dark(), Driving())), False),
+        (parked(), True),
+        (All((dark(), All((standing(), lit())))), True),
+        (Not(parked()), False),
+        (All((dark(), driving())), False),
     ],
     ids=str,
 )
@@ -268,7 +268,7 @@ def test_an_alert_that_takes_no_advice_is_seen(ground, monkeypatch):
 
 def test_a_set_point_that_warms_nobody_is_seen(ground):
     start = replace(GRID, cabin={"temperature_c": 8.0})
-    task = changed(goal=SignalRaised(HVAC.DRIVER_TEMPERATURE, 2.0), start=start, moves=())
+    task = changed(goal=signal_raised(HVAC.DRIVER_TEMPERATURE, 2.0), start=start, moves=())
     moves = (Open("climate"), Tap("hvac.driver_temperature.increase", times=4))
     task = replace(task, dimension=Dimension.IMPLICIT_INTENT, first=replace(task.first, moves=moves))
     (wrong,) = gates.effect(ground(task))
@@ -296,7 +296,7 @@ def test_a_cruise_above_the_limit_is_seen(ground):
 
 
 def test_a_task_that_wants_nothing_is_seen(ground):
-    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), NothingDone())), moves=())
+    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), nothing_done())), moves=())
     wrong = list(gates.trivial({"first": ground(free)}))
     assert "complete wins" in wrong
 
@@ -311,7 +311,7 @@ def test_functions_win_what_touch_wins_and_nothing_by_themselves(ground):
     assert list(functions_are_not_enough({"first": stand})) == []
     (wrong,) = functions_win(ground(changed(goal=SignalIs(SEAT.DRIVER_HEATING, (50.0, -50.0)))))
     assert "succeeds with set_seat_heating {'which': 'driver', 'percent': -50.0}" in wrong
-    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), NothingDone())), moves=())
+    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), nothing_done())), moves=())
     assert "complete at once wins by functions" in list(functions_are_not_enough({"first": ground(free)}))
 
 
@@ -321,7 +321,7 @@ def test_a_task_that_luck_wins_is_seen(ground, monkeypatch):
 
 
 def test_a_refusal_may_be_won_by_the_declarations_of_chance(ground):
-    refused = ground(changed(goal=NothingDone(), moves=(), declares=GoalStatus.INFEASIBLE))
+    refused = ground(changed(goal=nothing_done(), moves=(), declares=GoalStatus.INFEASIBLE))
     assert list(gates.random(refused)) == []
     assert [gates.by_chance(trials, 1 / 3) for trials in (0, 1, 4, 5, 9, 20)] == [0, 1, 4, 4, 6, 12]
     assert gates.by_chance(20, 0.0) == 0
@@ -329,7 +329,7 @@ def test_a_refusal_may_be_won_by_the_declarations_of_chance(ground):
 
 def test_only_what_is_lost_is_given_up(ground):
     """Luck that ends in success without giving up does so with it, and the other way round."""
-    easy = ground(replace(SOUND, first=replace(SOUND.first, goal=AnyOf((SOUND.first.goal, NothingDone())))))
+    easy = ground(replace(SOUND, first=replace(SOUND.first, goal=AnyOf((SOUND.first.goal, nothing_done())))))
     for at in (easy, ground(SOUND)):
         for number in range(8):
             whole, short = (at.play(at.agent(Random(number)), stop_when_lost=stop) for stop in (False, True))
@@ -348,7 +348,7 @@ def test_a_side_effect_that_stays_ends_a_hopeless_run(ground):
 
 
 def test_a_trigger_without_a_drive_is_seen(ground, simulations):
-    free = changed(trigger=Trigger(SignalAbove(HVAC.CABIN_TEMPERATURE, -50.0), for_s=2.0, within_s=20.0))
+    free = changed(trigger=Trigger(signal_above(HVAC.CABIN_TEMPERATURE, -50.0), for_s=2.0, within_s=20.0))
     assert list(gates.road(ground(free), simulations)) == ["its trigger is reached by a parked car"]
 
 
@@ -360,7 +360,7 @@ def test_a_pair_with_one_right_act_is_seen(ground):
 
 def test_a_pair_that_can_always_be_declined_is_seen(ground):
     declares, reasons = GoalStatus.INFEASIBLE, frozenset({Reason.SAFETY})
-    idle = Half(GRID, ON_THE_WAY, NothingDone(), (), COMFORT, Basis.WISH, declares=declares, reasons=reasons)
+    idle = Half(GRID, ON_THE_WAY, nothing_done(), (), COMFORT, Basis.WISH, declares=declares, reasons=reasons)
     pair = replace(SOUND, first=idle, second=idle, difference="none")
     grounds = {half: ground(pair, half) for half in pair.halves}
     assert f"{GoalStatus.INFEASIBLE} wins both halves" in list(gates.trivial(grounds))
@@ -480,7 +480,7 @@ def test_a_wrong_tag_of_place_is_seen(ground, tags, origins, countries, rule, se
         replace(
             SOUND.first,
             start=replace(GRID, origin=origin),
-            trigger=Trigger(All((Driving(), *map(InCountry, countries[at : at + 1]))), 3.0, 60.0),
+            trigger=Trigger(All((driving(), *map(in_country, countries[at : at + 1]))), 3.0, 60.0),
             basis=Basis.LAW if rule else Basis.WISH,
             rule=rule,
         )
@@ -500,7 +500,7 @@ def test_every_reading_has_a_facet_and_every_difference_frees_some():
 
 
 def test_a_scenario_out_of_reach_is_seen(simulations):
-    dark = changed(trigger=Trigger(InTunnel(), for_s=1.0, within_s=5.0))
+    dark = changed(trigger=Trigger(in_tunnel(), for_s=1.0, within_s=5.0))
     (wrong,) = gates.reach(replace(dark, scenarios=("grid",)), 0, simulations)
     assert wrong.startswith("first in grid: ")
 

@@ -12,17 +12,17 @@ from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat, take_seats
 from automotive_cosim.cockpit.signals import ADAS, BODY, Signals
 from automotive_cosim.contracts import BoundingBox, Element
 from automotive_cosim.proof.knowledge import DrawnValues, normal, unknown
-from automotive_cosim.tasking.checks import NothingDone
+from automotive_cosim.tasking.checks import nothing_done
 from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.moves import Consult, Open, Tap, TypeText
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Basis, Deadline, Half, Start
-from automotive_cosim.tasking.triggers import Driving, Trigger
+from automotive_cosim.tasking.triggers import Trigger, driving
 
 HALF = Half(
     Start("grid", "avenue"),
-    Trigger(Driving(), 3.0, 60.0),
-    NothingDone(),
+    Trigger(driving(), 3.0, 60.0),
+    nothing_done(),
     (),
     Deadline(60.0, "for the test"),
     Basis.WISH,

@@ -26,7 +26,7 @@ from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.cockpit.signals import HVAC, SEAT
 from automotive_cosim.tasking.moves import Open, Tap
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
-from automotive_cosim.tasking.triggers import Driving, Trigger
+from automotive_cosim.tasking.triggers import driving, Trigger
 
 class Trouble:
     writes = frozenset({HVAC.SYNC.path})
@@ -48,7 +48,7 @@ def sync(name, goal, *more):
     words = tuple(f"{said} {name.replace('_', ' ')}" for said in ("Sync off.", "One each.", "Split it.", "Apart."))
     start = Start("grid", "avenue")
     ways = Open("climate"), Tap("hvac.sync"), *more
-    trigger, deadline = Trigger(Driving(), 3.0, 60.0), Deadline(60.0, "an errand")
+    trigger, deadline = Trigger(driving(), 3.0, 60.0), Deadline(60.0, "an errand")
     half = Half(start, trigger, goal, ways, deadline, Basis.WISH)
     return Task(name, Module.HVAC, Dimension.EXPLICIT_CONTROL, words, half, scenarios=("grid",))
 

@@ -262,7 +262,7 @@ def test_the_time_left_ends_with_the_budget(monkeypatch):
     """At ten tokens a second, the 2,000 that are left last for 200 s; the jobs would take much longer."""
     clock = Clocked(1)
     monkeypatch.setattr(batch, "time", clock)
-    monkeypatch.setattr(batch, "note_spent", lambda store, meter: None)
+    monkeypatch.setattr(batch._Batch, "_note_spent", lambda batch: None)
     told: list[tuple[float, float | None, str]] = []
 
     def tell(progress: Progress[JobRow]) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.tasking.checks import AllOf, AskedFirst, NotAsked, NothingDone, asked_in
+from automotive_cosim.tasking.checks import AllOf, asked_first, asked_in, not_asked, nothing_done
 from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic, dialogue, questions, spoken_s, topic_of
 
 WHO = Topic("which Nora", (("keller", "nora keller"), ("holm", "nora holm")), "Nora Holm.", ("nora", "which one"))
@@ -77,13 +77,13 @@ def test_talking_takes_time():
     ],
 )
 def test_asking_is_one_question_first_that_names_every_alternative(now, right):
-    assert AskedFirst(WHO).holds(at(), now, [now]) is right
-    assert NotAsked().holds(at(), now, [now]) is (not questions(at(), now))
+    assert asked_first(WHO).holds(at(), now, [now]) is right
+    assert not_asked().holds(at(), now, [now]) is (not questions(at(), now))
 
 
 def test_a_goal_says_what_must_be_asked():
-    assert tuple(asked_in(AllOf((NothingDone(), AllOf((AskedFirst(WHO),)))))) == (WHO,)
-    assert tuple(asked_in(NotAsked())) == ()
+    assert tuple(asked_in(AllOf((nothing_done(), AllOf((asked_first(WHO),)))))) == (WHO,)
+    assert tuple(asked_in(not_asked())) == ()
 
 
 @pytest.mark.parametrize(

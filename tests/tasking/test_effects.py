@@ -7,7 +7,7 @@ import pytest
 
 from automotive_cosim.cockpit.signals import GLASS, HVAC, OUTSIDE, Signal, Signals
 from automotive_cosim.cockpit.vehicle import Vehicle
-from automotive_cosim.tasking.effects import EFFECTS, CabinWarmer, GlassClears
+from automotive_cosim.tasking.effects import EFFECTS, cabin_warmer, glass_clears
 
 
 def moment(outside_c: float, cabin_c: float, *commands: tuple[Signal[Any], Any], fog: float = 0.0) -> Any:
@@ -42,7 +42,7 @@ def moment(outside_c: float, cabin_c: float, *commands: tuple[Signal[Any], Any],
 )
 def test_where_the_heater_is_at_its_most_only_more_air_warms(command: tuple[Signal[Any], Any], warms: bool) -> None:
     start, now = moment(-14.0, 7.0), moment(-14.0, 7.0, command)
-    assert CabinWarmer(0.5).holds(start, now, [start, now]) is warms
+    assert cabin_warmer(0.5).holds(start, now, [start, now]) is warms
 
 
 @pytest.mark.parametrize(
@@ -60,11 +60,11 @@ def test_warm_or_dry_air_at_the_glass_clears_it_however_it_gets_there(
     commands: tuple[tuple[Signal[Any], Any], ...], clears: bool
 ) -> None:
     start, now = moment(4.0, 21.0, fog=0.6), moment(4.0, 21.0, *commands, fog=0.6)
-    assert GlassClears(rear=False, by=0.3).holds(start, now, [start, now]) is clears
+    assert glass_clears(rear=False, by=0.3).holds(start, now, [start, now]) is clears
 
 
 def test_doing_nothing_has_no_effect() -> None:
     start = moment(4.0, 12.0, fog=0.5)
-    for check in (CabinWarmer(0.01), GlassClears(rear=False, by=0.01), GlassClears(rear=True, by=0.01)):
-        assert isinstance(check, EFFECTS)
+    for check in (cabin_warmer(0.01), glass_clears(rear=False, by=0.01), glass_clears(rear=True, by=0.01)):
+        assert check.name in EFFECTS
         assert not check.holds(start, start, [start])

@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 
 from automotive_cosim.tasking.checks import (
-    AppDataAt,
-    AppDataIncludes,
     AppDataIs,
-    AppDataWithout,
-    EnteredAll,
-    SaysFigure,
+    app_data_at,
+    app_data_includes,
+    app_data_without,
+    entered_all,
+    says_figure,
 )
-from automotive_cosim.tasking.history import After, Lasted, NotBefore, While
+from automotive_cosim.tasking.history import after, lasted, not_before, while_
 
 A, B = AppDataIs("a", (True,)), AppDataIs("b", (True,))
 
@@ -38,16 +38,16 @@ def holds(check: Any, moments: list[Any]) -> bool:
 @pytest.mark.parametrize(
     ("check", "right", "wrong"),
     [
-        (After(A, B), ["", "a", "ab"], ["", "b", "ab"]),
-        (After(A, B), ["", "a", "b"], ["", "b", "a", "b"]),
-        (After(A, B), ["", "ab"], ["", "a"]),
-        (Lasted(A, 2.0, 4.0), ["", "a", "a", "a", ""], ["", "a", "", "a", ""]),
-        (Lasted(A, 2.0, 4.0), ["a", "a", "a", ""], ["a", "a", "a"]),
-        (Lasted(A, 2.0, 4.0), ["a"] * 5 + [""], ["a"] * 6 + [""]),
-        (NotBefore(A, "22:00"), [""] * 10 + ["a"], [""] * 9 + ["a", "a"]),
-        (NotBefore(A, "22:00"), [""] * 12 + ["a"], [""] * 13),
-        (While(A, B, 2.0), ["b", "ab", "ab", ""], ["b", "ab", "a", "b"]),
-        (While(A, B, 2.0), ["", "ab", "ab"], ["", "ab", ""]),
+        (after(A, B), ["", "a", "ab"], ["", "b", "ab"]),
+        (after(A, B), ["", "a", "b"], ["", "b", "a", "b"]),
+        (after(A, B), ["", "ab"], ["", "a"]),
+        (lasted(A, 2.0, 4.0), ["", "a", "a", "a", ""], ["", "a", "", "a", ""]),
+        (lasted(A, 2.0, 4.0), ["a", "a", "a", ""], ["a", "a", "a"]),
+        (lasted(A, 2.0, 4.0), ["a"] * 5 + [""], ["a"] * 6 + [""]),
+        (not_before(A, "22:00"), [""] * 10 + ["a"], [""] * 9 + ["a", "a"]),
+        (not_before(A, "22:00"), [""] * 12 + ["a"], [""] * 13),
+        (while_(A, B, 2.0), ["b", "ab", "ab", ""], ["b", "ab", "a", "b"]),
+        (while_(A, B, 2.0), ["", "ab", "ab"], ["", "ab", ""]),
     ],
 )
 def test_checks_over_time(check, right, wrong):
@@ -81,25 +81,25 @@ def said(text: str, to: str = "Ada") -> dict[str, str]:
     ],
 )
 def test_a_figure_counts_to_its_tolerance(sent, right):
-    check = SaysFigure("Ada", "kWh per 100 km", 18.3, 0.1)
+    check = says_figure("Ada", "kWh per 100 km", 18.3, 0.1)
     assert judged(check, now(**{"messages.sent": []}), now(**{"messages.sent": sent})) is right
 
 
 def test_a_time_of_day_is_a_figure_in_minutes():
-    check = SaysFigure("Ada", "there", 17 * 60 + 45, 2)
+    check = says_figure("Ada", "there", 17 * 60 + 45, 2)
     assert judged(check, now(**{"messages.sent": []}), now(**{"messages.sent": [said("I'll be there at 17:44")]}))
 
 
 def test_several_entries_in_any_order_or_in_one():
     before, after = now(calls=["x"]), now(calls=["x", "b", "a"])
-    assert judged(EnteredAll("calls", ("a", "b")), before, after)
-    assert not judged(EnteredAll("calls", ("a", "b"), in_order=True), before, after)
-    assert not judged(EnteredAll("calls", ("a",)), before, after)
-    assert not judged(EnteredAll("calls", ("a", "a")), before, after)
+    assert judged(entered_all("calls", ("a", "b")), before, after)
+    assert not judged(entered_all("calls", ("a", "b"), in_order=True), before, after)
+    assert not judged(entered_all("calls", ("a",)), before, after)
+    assert not judged(entered_all("calls", ("a", "a")), before, after)
 
 
 def test_several_entries_of_a_list_whatever_else_it_has():
-    check = AppDataIncludes("read", ("a", "b"))
+    check = app_data_includes("read", ("a", "b"))
     assert judged(check, now(read=[]), now(read=["a", "b"]))
     assert judged(check, now(read=["a"]), now(read=["a", "b", "c"]))
     assert not judged(check, now(read=[]), now(read=["a", "c"]))
@@ -111,8 +111,8 @@ def test_one_place_of_a_list_and_no_other():
         now(dates=[{"at": "9", "title": "x"}, {"at": "11", "title": "y"}]),
         now(dates=[{"at": "8", "title": "x"}, {"at": "11", "title": "y"}]),
     )
-    check = AppDataAt("dates", 1, {"at": "11"})
+    check = app_data_at("dates", 1, {"at": "11"})
     assert judged(check, before, right)
     assert not judged(check, before, more)
-    assert judged(AppDataWithout("dates", 0), before, now(dates=before.commands["dates"][1:]))
-    assert not judged(AppDataWithout("dates", 0), before, now(dates=[]))
+    assert judged(app_data_without("dates", 0), before, now(dates=before.commands["dates"][1:]))
+    assert not judged(app_data_without("dates", 0), before, now(dates=[]))

@@ -20,8 +20,8 @@ from automotive_cosim.contracts import (
     RoadRequest,
     SlowDown,
 )
-from automotive_cosim.tasking.checks import AlertGiven, RoadAsked
-from automotive_cosim.tasking.triggers import OutOfRange, SlowLeaderWithin
+from automotive_cosim.tasking.checks import AlertGiven, road_asked
+from automotive_cosim.tasking.triggers import out_of_range, slow_leader_within
 
 
 def moment(leader: OtherVehicle | None = None, range_m: float = 0.0, left_m: float = 0.0) -> Any:
@@ -42,14 +42,14 @@ def asked(*requests: RoadRequest) -> Any:
     [(100.0, 0.0, True), (100.0, 5.0, True), (100.0, 9.0, False), (201.0, 0.0, False)],
 )
 def test_a_slow_leader_is_near_and_slow(gap_m: float, speed_mps: float, holds: bool):
-    slow = SlowLeaderWithin(25.0, 200.0)
+    slow = slow_leader_within(25.0, 200.0)
     assert slow(moment(OtherVehicle("other", gap_m, speed_mps, None))) is holds
     assert not slow(moment())
 
 
 def test_out_of_range_compares_with_the_way_left():
-    assert OutOfRange()(moment(range_m=9_000.0, left_m=9_001.0))
-    assert not OutOfRange()(moment(range_m=9_000.0, left_m=9_000.0))
+    assert out_of_range()(moment(range_m=9_000.0, left_m=9_001.0))
+    assert not out_of_range()(moment(range_m=9_000.0, left_m=9_000.0))
 
 
 @pytest.mark.parametrize(
@@ -93,5 +93,5 @@ def test_a_request_counts_by_its_class_or_as_it_is(
 ):
     before = SlowDown(30.0)
     start, now = asked(before), asked(before, *requests)
-    assert RoadAsked(Reroute).holds(start, now, [now]) is any_reroute
-    assert RoadAsked(Reroute("A 4")).holds(start, now, [now]) is that_reroute
+    assert road_asked(Reroute).holds(start, now, [now]) is any_reroute
+    assert road_asked(Reroute("A 4")).holds(start, now, [now]) is that_reroute

@@ -13,12 +13,12 @@ from automotive_cosim.tasking.checks import (
     AnyOf,
     AppDataIs,
     Check,
-    RoadAsked,
-    SignalChanged,
     SignalIs,
-    SignalLowered,
-    SignalRaised,
     SignalWithin,
+    road_asked,
+    signal_changed,
+    signal_lowered,
+    signal_raised,
 )
 from automotive_cosim.tasking.telling import missing, told
 
@@ -41,13 +41,13 @@ def alert(kind: AlertKind, speed_kmh: float | None = None) -> dict[str, Any]:
         (SignalIs(FAN, (100.0,)), "fan speed is 30 %, should be 100 %"),
         (SignalIs(SEAT_HEAT, (50.0, 100.0)), "driver's seat heating is 0 %, should be 50 % or 100 %"),
         (SignalIs(LIGHTS.LOW_BEAM, (False,)), "dipped beam is on, should be off"),
-        (SignalRaised(FAN, 20.0), "fan speed is 30 %, should be 50 % or more"),
-        (SignalLowered(FAN, 10.0), "fan speed is 30 %, should be 20 % or less"),
+        (signal_raised(FAN, 20.0), "fan speed is 30 %, should be 50 % or more"),
+        (signal_lowered(FAN, 10.0), "fan speed is 30 %, should be 20 % or less"),
         (SignalWithin(FAN, 40.0, 60.0), "fan speed is 30 %, should be 40 % to 60 %"),
-        (SignalChanged(FAN), "fan speed is still 30 %"),
+        (signal_changed(FAN), "fan speed is still 30 %"),
         (AppDataIs("navigation.destination", ("Work",)), "the destination is Home, should be Work"),
         (AlertGiven(AlertKind.TUNNEL), "no alert was given, should be exactly one tunnel alert"),
-        (RoadAsked(Reroute("A 4")), "there should be exactly one reroute request, to A 4"),
+        (road_asked(Reroute("A 4")), "there should be exactly one reroute request, to A 4"),
         (
             AllOf((SignalIs(FAN, (30.0,)), SignalIs(SEAT_HEAT, (50.0,)))),
             "driver's seat heating is 0 %, should be 50 %",
@@ -69,11 +69,11 @@ def test_what_lacks_is_told_as_what_is_and_what_should_be(check: Check, words: s
     ("check", "short_pct", "enough_pct"),
     [
         (SignalIs(FAN, (100.0,)), 99.0, 100.0),
-        (SignalRaised(FAN, 20.0), 49.0, 50.0),
-        (SignalLowered(FAN, 10.0), 21.0, 20.0),
+        (signal_raised(FAN, 20.0), 49.0, 50.0),
+        (signal_lowered(FAN, 10.0), 21.0, 20.0),
         (SignalWithin(FAN, 40.0, 60.0), 39.0, 40.0),
         (SignalWithin(FAN, 40.0, 60.0), 61.0, 60.0),
-        (SignalChanged(FAN), 30.0, 31.0),
+        (signal_changed(FAN), 30.0, 31.0),
     ],
 )
 def test_a_signal_holds_from_its_bound_on(check: Check, short_pct: float, enough_pct: float) -> None:

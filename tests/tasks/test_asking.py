@@ -5,7 +5,7 @@ from itertools import combinations
 from automotive_cosim.agents.trivial import AlwaysAsk
 from automotive_cosim.cockpit.actions import TEXT_LIMIT
 from automotive_cosim.contracts import Observation
-from automotive_cosim.tasking.checks import NotAsked
+from automotive_cosim.tasking.checks import not_asked
 from automotive_cosim.tasking.dialogue import topic_of
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.moves import Consult, Hear, Open, Tap
@@ -60,7 +60,7 @@ def test_nothing_tells_what_is_meant_where_it_has_to_be_asked(task):
 @over(ASKING)
 def test_where_it_can_be_found_out_a_question_loses(task):
     for instance in drawn(task, "second"):
-        assert NotAsked() in instance.half.goal.checks
+        assert not_asked() in instance.half.goal.checks
         assert not any(isinstance(move, Consult) for move in instance.moves)
         assert instance.half.topics
 

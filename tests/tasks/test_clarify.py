@@ -1,6 +1,6 @@
 """Laws over the suite of wishes that have to be made clear."""
 
-from automotive_cosim.tasking.checks import NotAsked
+from automotive_cosim.tasking.checks import not_asked
 from automotive_cosim.tasking.dialogue import topic_of
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Consult
@@ -26,7 +26,7 @@ def test_only_the_second_half_tells_what_is_meant_and_there_a_question_loses(tas
     assert len(task.templates) == 5
     assert "which" not in names((task.templates, task.first.start))
     assert "which" in names(task.second.start)
-    assert NotAsked() in task.second.goal.checks
+    assert not_asked() in task.second.goal.checks
     assert not any(isinstance(move, Consult) for move in task.second.moves)
 
 

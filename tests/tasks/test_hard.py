@@ -7,7 +7,6 @@ from collections import Counter
 from automotive_cosim.cockpit.apps.phone.state import Thread
 from automotive_cosim.proof.gates import PACE
 from automotive_cosim.tasking.checks import AllOf, Check
-from automotive_cosim.tasking.history import Lasted, Watched
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Do, Tap, TapUntil
 from automotive_cosim.tasking.sets import Suite
@@ -51,7 +50,9 @@ def test_a_third_is_in_a_moving_car_and_a_quarter_is_interrupted():
 def test_restraint_is_asked_for_as_long_as_an_act(task: Task):
     """In one half at least there is nothing to do but to watch, or to leave it at what was set first."""
     watches = [
-        name for name in task.halves if any(isinstance(each, Watched | Lasted) for each in _checks(task, name))
+        name
+        for name in task.halves
+        if any(getattr(each, "name", "") in ("watched", "lasted") for each in _checks(task, name))
     ]
     assert watches
 

@@ -22,7 +22,7 @@ from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.tasking.moves import Open, Tap
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
-from automotive_cosim.tasking.triggers import Driving, Trigger
+from automotive_cosim.tasking.triggers import driving, Trigger
 
 TASKS = (
     Task(
@@ -31,7 +31,7 @@ TASKS = (
         Dimension.EXPLICIT_CONTROL,
         ("Sync off.", "One side each.", "Split the zones.", "Separate temperatures."),
         Half(
-            Start("paris_centre", "centre"), Trigger(Driving(), 3.0, 60.0), SignalIs(HVAC.SYNC, (False,)),
+            Start("paris_centre", "centre"), Trigger(driving(), 3.0, 60.0), SignalIs(HVAC.SYNC, (False,)),
             (Open("climate"), Tap("hvac.sync")), Deadline(30.0, "a wish"), Basis.WISH,
         ),
     ),

@@ -3,9 +3,9 @@
 import typer
 
 from automotive_cosim.studies.commands.compare import compare
-from automotive_cosim.studies.commands.network import adoption, congestion, days
+from automotive_cosim.studies.commands.network import COMMANDS
 from automotive_cosim.studies.commands.reroute import reroute
 
 app = typer.Typer(help="Measure what rerouting saves and what a measure does to congestion.", no_args_is_help=True)
-for command in (reroute, congestion, adoption, days, compare):
+for command in (reroute, *COMMANDS, compare):
     app.command()(command)

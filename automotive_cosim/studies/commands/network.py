@@ -83,6 +83,10 @@ def adoption(
     _run(plan, ADOPTION, "seeds", out, settings, as_json=as_json)
 
 
+COMMANDS = (congestion, adoption, days)
+"""In the order in which they are listed."""
+
+
 def _run(
     plan: TrafficSettings,
     kind: BatchKind[Any, Any, Any],
