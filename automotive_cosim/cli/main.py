@@ -6,6 +6,7 @@ Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an inf
 
 from __future__ import annotations
 
+import ast
 import io
 import os
 import signal
@@ -13,13 +14,15 @@ import sys
 import threading
 from contextlib import nullcontext
 from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
 from pkgutil import resolve_name
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from automotive_cosim import __version__
-from automotive_cosim.cli.options import CONTENTS, READ, RUN, TOOLS
+from automotive_cosim.cli import CONTENTS, READ, RUN, TOOLS
 from automotive_cosim.cli.terminal import discard_output, json_alone, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.plain import plain
@@ -56,6 +59,8 @@ COMMANDS = (
     ("a2a", "a2a:a2a", TOOLS),
 )
 """Their names, where they are, and in which part of the list they stand. Extensions add more."""
+LIST = "--help"
+"""Asked for without a command: the list of all."""
 EXTENDED = "scenarios"
 """The group to which extensions add commands."""
 
@@ -73,19 +78,39 @@ def made(asked: str = "") -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_options)
-    alone = [row for row in COMMANDS if row[0] == asked]
+    rows = [(name, f"automotive_cosim.cli.{where}", panel) for name, where, panel in COMMANDS]
+    rows += [row for extension in extensions() for row in extension.COMMANDS]
+    alone = [row for row in rows if row[0] == asked]
     groups = {}
-    for name, where, panel in alone or COMMANDS:
-        command = resolve_name(f"automotive_cosim.cli.{where}")
+    for name, where, panel in alone or rows:
+        command = _listed(where) if asked == LIST else resolve_name(where)
         if isinstance(command, typer.Typer):
             app.add_typer(command, name=name, rich_help_panel=panel)
             groups[name] = command
         else:
             app.command(name, rich_help_panel=panel)(command)
-    if not alone or asked == EXTENDED:
+    if asked == EXTENDED or not (alone or asked == LIST):
         for extension in extensions():
-            extension.add_commands(app, groups)
+            extension.add_commands(groups)
     return app
+
+
+def _listed(where: str) -> Any:
+    """A command or group that only has its help, read from its file: to import all takes most of a second."""
+    module, _, named = where.partition(":")
+    spec = find_spec(module)
+
+    def listed() -> None: ...
+
+    for node in ast.parse(Path(str(spec and spec.origin)).read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef) and node.name == named:
+            listed.__doc__ = ast.get_docstring(node)
+        elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == named:
+            said = {each.arg: each.value for each in getattr(node.value, "keywords", ())}["help"]
+            group = typer.Typer(help=ast.literal_eval(said))
+            group.callback()(listed)
+            return group
+    return listed
 
 
 def __getattr__(name: str) -> typer.Typer:
@@ -150,7 +175,7 @@ def main() -> None:
 def _run() -> int:
     """Runs a command; returns the exit code."""
     try:
-        asked = next((word for word in sys.argv[1:] if not word.startswith("-")), "")
+        asked = next((word for word in sys.argv[1:] if not word.startswith("-")), LIST)
         return made(asked)(standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):

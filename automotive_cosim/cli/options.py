@@ -21,9 +21,6 @@ from automotive_cosim.errors import UnknownNameError, UserError
 
 P = ParamSpec("P")
 
-RUN, READ, CONTENTS, TOOLS = "Run agents", "Read, check and publish results", "Tasks and places", "Tools"
-"""Parts of the list of commands."""
-
 LARGE_BYTES = 4_000_000
 """A network of some 2,000 edges, or packed of ten times as many, which is read in a second."""
 

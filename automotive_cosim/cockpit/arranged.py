@@ -70,8 +70,8 @@ def _shelves(screen: str, place: OwnScreen, state: State) -> tuple[Widget, ...]:
     """The controls that it shows."""
     every = [part for shelf in place.shelves for part in _parts(shelf, state)]
     widest = max(sum(isinstance(each, Choice) for each in own) for own, _ in every)
-    wide = content(state).width > TWO_COLUMNS
-    columns, room = (2, NARROW_ROOM) if wide and widest <= MOST_CHOICES else (1, WIDE_ROOM if wide else NARROW_ROOM)
+    both = content(state).width > TWO_COLUMNS and widest <= MOST_CHOICES
+    columns, room = (2, NARROW_ROOM) if both else (1, WIDE_ROOM)
     listed = rows(
         f"{screen}.all", place.text, state, every, lambda _, part: _line(*part, room), columns=columns,
         height=LINE_HEIGHT, gap=LINE_GAP,

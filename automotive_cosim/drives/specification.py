@@ -79,7 +79,9 @@ class DriveSpec:
             InfrastructureError: no gap opened for the car, or the traffic simulation failed.
         """
         drive, conditions = script or self.script, self.conditions.at(self.seed)
-        drive = replace(drive, signals={**make_named(conditions.make).units.signals, **drive.signals})
+        units = dict(make_named(conditions.make).units.signals)
+        units.pop(HMI.TEMPERATURE_UNIT.path, None)  # what is asked for in half degrees
+        drive = replace(drive, signals=units | dict(drive.signals)) if units else drive
         if self.conditions.language is not Language.ENGLISH:
             drive = replace(drive, signals={HMI.LANGUAGE.path: str(self.conditions.language), **drive.signals})
         if self.conditions.attention.is_limited:

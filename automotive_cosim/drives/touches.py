@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES
 from automotive_cosim.cockpit.language import word
+from automotive_cosim.cockpit.tree import make_named, way
 from automotive_cosim.contracts import Action, ActionType, Element, Observation
 from automotive_cosim.contracts.errand import Errand, ErrandKind
-from automotive_cosim.contracts.given import Language
+from automotive_cosim.contracts.given import CarMake, Language
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.drives.errands import understood
 
@@ -66,21 +68,26 @@ class Hands:
     def _next(self, errand: Errand, elements: Sequence[Element]) -> Action | None:
         if errand.kind is ErrandKind.CLIMATE:
             return self._warmed(errand, elements)
-        way = tuple(_way(errand))
-        for last, touch in zip((True, *(False,) * len(way)), reversed(way), strict=False):
+        is_last, action = self._towards(tuple(_way(errand)), elements)
+        if is_last:
+            self._errands.remove(errand)
+        return action
+
+    def _towards(self, way: tuple[Touch, ...], elements: Sequence[Element]) -> tuple[bool, Action | None]:
+        """The next touch on a way, and whether it is the last one."""
+        for touch in reversed(way):
             index = touch.on(elements)
             if index is not None:
-                if last:
-                    self._errands.remove(errand)
-                return Action(ActionType.CLICK, index=index)
-        return None
+                return touch is way[-1], Action(ActionType.CLICK, index=index)
+        return False, None
 
     def _warmed(self, errand: Errand, elements: Sequence[Element]) -> Action | None:
-        name = f"dock.{errand.about}_temperature"
         texts = {key_of(element.resource_id): element.text for element in elements}
-        shown = re.match(r"\d+[.,]?\d*", texts.get(f"{name}.value", ""))
+        docked, on_screen = (f"{where}.{errand.about}_temperature" for where in ("dock", "hvac"))
+        name, value = (docked, f"{docked}.value") if f"{docked}.value" in texts else (on_screen, on_screen)
+        shown = re.match(r"\d+[.,]?\d*", texts.get(value, ""))
         if shown is None:
-            return None
+            return self._towards(tuple(_leads("climate")), elements)[1]
         left_c = float(errand.wanted) - float(shown[0].replace(",", "."))
         if abs(left_c) < STEP_C / 2:
             self._errands.remove(errand)
@@ -89,17 +96,24 @@ class Hands:
         return None if index is None else Action(ActionType.CLICK, index=index)
 
 
+@cache
+def _leads(screen: str) -> tuple[Touch, ...]:
+    """What leads to a screen, in whichever make the car is."""
+    makes = (make_named(name) for name in CarMake if name is not CarMake.DRAWN)
+    return tuple(dict.fromkeys(Touch(key) for make in makes for key in way(make, screen)))
+
+
 def _way(errand: Errand) -> Iterator[Touch]:
     """The touches that lead to it from any screen; of those that are there, the last one is next."""
     match errand.kind:
         case ErrandKind.CALL:
             yield Touch("call.decline")
         case ErrandKind.PLACE:
-            yield Touch("dock.map")
+            yield from _leads("map")
             yield Touch("map.place.", tuple(word(errand.about, language) for language in Language))
             yield Touch("place.start")
         case ErrandKind.MESSAGE:
-            yield Touch("dock.phone")
+            yield from _leads("phone")
             yield Touch("phone.tab.messages")
             yield Touch("phone.thread.", (errand.about,))
             yield Touch(f"thread.answer.{[str(text) for text in TEMPLATES].index(errand.wanted)}")

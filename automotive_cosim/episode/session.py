@@ -356,7 +356,8 @@ class Session:
         self.steps.append(
             trace.Step(
                 len(self.steps), moment, self.elements, action, feedback, self.thought_s, said,
-                *((reached, level_db(moment)) if self._hears else ()),
+                reached if self._hears else None,
+                level_db(moment) if self._hears else None,
             )
         )  # fmt: skip
         self.thought_s = 0.0
@@ -413,7 +414,6 @@ def beginning(
     """The fields of a session that begins now, on the screen that its conditions ask for."""
     first, is_by_ear = world.moment, setup.conditions.hear.is_by_ear
     (wish,) = reaching((goal,), setup, first)
-    reached: tuple[Any, ...] = ((wish,), level_db(first)) if is_by_ear else ()
     make = setup.conditions.make
     world.cockpit.fit(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
@@ -439,7 +439,17 @@ def beginning(
         "moments": [first],
         "elements": elements,
         "observation": observation,
-        "steps": [trace.Step(0, first, elements, None, feedback, 0.0, (), *reached)],
+        "steps": [
+            trace.Step(
+                0,
+                first,
+                elements,
+                None,
+                feedback,
+                heard=(wish,) if is_by_ear else None,
+                cabin_db=level_db(first) if is_by_ear else None,
+            )
+        ],
     }
 
 

@@ -145,8 +145,8 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
     @property
     def situation(self) -> Hashable:
         """The drive up to the hand-over, on which no agent acts."""
-        spoken = Conditions(language=self.conditions.language)
-        return replace(self, agent="", model="", without=(), conditions=spoken, repeat=0)
+        shown = Conditions(language=self.conditions.language, make=self.conditions.make)
+        return replace(self, agent="", model="", without=(), conditions=shown, repeat=0)
 
     @property
     def instance(self) -> tuple[Hashable, ...]:

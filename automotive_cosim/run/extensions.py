@@ -1,6 +1,6 @@
 """What extends the package, which knows nothing of it: a sub-package with a module ``extension``.
 
-Its ``add_commands(app, groups)`` adds commands to the command line and to groups of it by their names. Its
+Its ``COMMANDS`` are rows of the command line, and ``add_commands(groups)`` adds to groups of it by their names. Its
 ``KINDS`` are kinds of results folder, by the word under ``study`` in the plan of a manifest. An installation
 without the sub-package lacks these and nothing else.
 """

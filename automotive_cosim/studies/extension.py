@@ -6,18 +6,19 @@ from collections.abc import Mapping
 
 import typer
 
+from automotive_cosim.cli import RUN
 from automotive_cosim.run.extensions import ResultsKind
 from automotive_cosim.studies.settings import HOME, NETWORKS, RerouteSettings
 
+COMMANDS = (("study", f"{HOME}.commands:app", RUN),)
+"""As in the command line."""
 
-def add_commands(app: typer.Typer, groups: Mapping[str, typer.Typer]) -> None:
-    """Adds ``study``, and ``calibrate`` and ``equilibrate`` to ``scenarios``."""
-    from automotive_cosim.cli.options import RUN
-    from automotive_cosim.studies import commands
+
+def add_commands(groups: Mapping[str, typer.Typer]) -> None:
+    """Adds ``calibrate`` and ``equilibrate`` to ``scenarios``."""
     from automotive_cosim.studies.commands.calibrate import calibrate_scenario
     from automotive_cosim.studies.commands.equilibrate import equilibrate_scenario
 
-    app.add_typer(commands.app, name="study", rich_help_panel=RUN)
     groups["scenarios"].command("calibrate")(calibrate_scenario)
     groups["scenarios"].command("equilibrate")(equilibrate_scenario)
 

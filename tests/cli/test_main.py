@@ -4,10 +4,11 @@ import sys
 
 import pytest
 from typer.main import get_command
+from typer.testing import CliRunner
 
 from automotive_cosim import __version__
 from automotive_cosim.agents import AGENTS
-from automotive_cosim.cli.main import app
+from automotive_cosim.cli.main import LIST, app, made
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
@@ -125,3 +126,10 @@ def test_json_is_one_object_and_nothing_else(cli, command):
     assert ran.code == 0
     assert isinstance(json.loads(ran.out), dict)
     assert ran.err == ""
+
+
+def test_the_list_of_commands_is_that_of_the_commands_themselves():
+    """It is read from their files, because to import all takes longer."""
+    listed, imported = (CliRunner().invoke(each, ["--help"], env={"COLUMNS": "100"}) for each in (made(LIST), app))
+    assert listed.output == imported.output
+    assert "study" in listed.output

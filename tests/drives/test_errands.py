@@ -14,9 +14,10 @@ from automotive_cosim.cockpit.actions import perform
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import HMI, HVAC
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.contracts.errand import Errand, ErrandKind
-from automotive_cosim.contracts.given import Language
+from automotive_cosim.contracts.given import CarMake, Language
 from automotive_cosim.cosim.car import with_cause
 from automotive_cosim.drives.errands import AFTER_S, ASKED_APART_S, SPARE_S, said, thanks, understood, with_errands
 from automotive_cosim.drives.events import KINDS, DriveAct, Tracker
@@ -158,8 +159,11 @@ def test_what_nobody_asks_for_is_charged() -> None:
     assert (act.worth, act.reason) == (Worth.FALSE, "nobody has asked for it")
 
 
-@pytest.mark.parametrize("language", Language)
-def test_the_watcher_s_hands_do_what_is_asked_in_every_language(language: Language) -> None:
+IN_MAKES = zip([make for make in CarMake if make not in (CarMake.HOME, CarMake.DRAWN)], Language, strict=True)
+
+
+@pytest.mark.parametrize(("make", "language"), [*((CarMake.HOME, language) for language in Language), *IN_MAKES])
+def test_the_watcher_s_hands_do_what_is_asked_in_every_language_and_make(make: CarMake, language: Language) -> None:
     errands = (
         replace(WARMTH, about="passenger", wanted="19"),
         WARMTH,
@@ -174,6 +178,7 @@ def test_the_watcher_s_hands_do_what_is_asked_in_every_language(language: Langua
             town(),
             rng=np.random.default_rng(1),
             signals={HMI.LANGUAGE.path: str(language)},
+            make=make_named(make),
             arrivals=[Arrival("message", 1.0, "Mia Frost", "Where are you?"), Arrival("call", 1.0, "Tom Hale")],
         )
         cockpit.sense(outside(), 0.0)

@@ -116,7 +116,7 @@ def changed(**fields: object) -> Task:
     return replace(SOUND, first=replace(SOUND.first, **fields))
 
 
-HALF_GATES = ("oracle", "start", "world", "wording", "slip", "prefix", "late", "random", "effect")
+HALF_GATES = ("oracle", "makes", "start", "world", "wording", "slip", "prefix", "late", "random", "effect")
 
 
 @pytest.mark.parametrize("gate", HALF_GATES)
