@@ -10,7 +10,7 @@ COPY . /source
 RUN python -m pip install --no-cache-dir build && python -m build --wheel --outdir /dist /source
 
 FROM python:3.11-slim
-ARG EXTRAS=llm,report
+ARG EXTRAS=doors,models,reports
 RUN apt-get update \
     && apt-get install -y --no-install-recommends libgl1 libx11-6 libxext6 libxrender1 libatomic1 libexpat1 libfribidi0 \
     && rm -rf /var/lib/apt/lists/*

@@ -66,6 +66,7 @@ def turn(
         pictures: whether the screen is sent along, and the marked screen if there is a list.
     """
     given = profile.channels
+    stays, now = _vehicle(observation.vehicle)
     is_listed, is_told = Channel.ELEMENTS in given, Channel.CONTEXT in given
     return fill(
         _file(profile, observation),
@@ -76,13 +77,14 @@ def turn(
             "policy": observation.policy,
             "thresholds": "" if profile.order.tells_thresholds else None,
             "goal": driver_words(observation),
-            "history": "\n".join(map(one_line, history)) or "nothing yet",
+            "history": "\n".join(map(one_line, history)) or None,
             "plan": one_line(plan) or None,
             "feedback": _timed_result(observation),
             "elements": prompt_parts.told(observation.elements or ()) if is_listed else None,
             "pictures": _pictured(PICTURES if is_listed else PICTURE, observation) if pictures else None,
             "seen": "the screen, its elements" if is_listed else "the screen",
-            "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
+            "vehicle": stays if Channel.VEHICLE in given else None,
+            "now": now if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
             "context": _context(profile, observation) if is_told else None,
@@ -115,6 +117,7 @@ def situation(
         is_resulting: whether it has the last result; without it, the time that has passed alone.
     """
     given = profile.channels
+    stays, now = _vehicle(observation.vehicle)
     is_listed = Channel.ELEMENTS in given
     return fill(
         "caller_now",
@@ -124,7 +127,8 @@ def situation(
             "passed": None if is_resulting else passed(observation),
             "elements": prompt_parts.told(observation.elements or ()) if is_listed else None,
             "pictures": _pictured(PICTURE, observation) if pictures else None,
-            "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
+            "vehicle": stays if Channel.VEHICLE in given else None,
+            "now": now if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
             "context": _context(profile, observation) if Channel.CONTEXT in given else None,
@@ -132,9 +136,10 @@ def situation(
     )
 
 
+TOLD_ELSEWHERE = {Channel.GPS: "Position: ", Channel.VEHICLE: "Speed: "}
+"""Lines of the geo-context that a section of a channel repeats."""
 PLACE_COUNTS = (
-    "Weigh what you know of the place against what the car is doing: the same act can be right in one place and "
-    "wrong in another."
+    "Weigh the place against what the car is doing: the same act can be right in one place and wrong in another."
 )
 DRIVE = "drive"
 """The prompt of a drive, the same for every agent."""
@@ -144,7 +149,7 @@ UNASKED = frozenset({ActionType.STATUS})
 """Actions that a watch has no use for."""
 ON_DRIVES = {
     ActionType.WAIT: "wait until something changes, or for up to 60 seconds",
-    ActionType.SHOW_ALERT: "warn the driver on screen and by voice; a text has up to 120 characters",
+    ActionType.SHOW_ALERT: "warn the driver on screen and by voice",
 }
 """What actions do that are described otherwise in a task."""
 PICTURES = (
@@ -257,7 +262,8 @@ def _context(profile: AgentProfile, observation: Observation) -> str:
     """The geo-context; short only for who can ask for the rest, and not in a watch, where anything can matter."""
     text = observation.context or "unknown"
     if ActionType.QUERY in profile.actions and not observation.on_watch:
-        return prompt_parts.context(text, driver_words(observation))
+        told = [line for channel, line in TOLD_ELSEWHERE.items() if channel in profile.channels]
+        return prompt_parts.context(text, driver_words(observation), told)
     return _lines(text)
 
 
@@ -285,13 +291,15 @@ def listing(index: int, element: Element) -> Json:
     return entry | {flag.removeprefix("is_"): True for flag in SHOWN_FLAGS if getattr(element, flag)}
 
 
-def _vehicle(vehicle: VehicleState | None) -> str:
-    return "unknown" if vehicle is None else prompt_parts.vehicle(vehicle)
+def _vehicle(vehicle: VehicleState | None) -> tuple[str, str]:
+    return ("unknown", "unknown") if vehicle is None else prompt_parts.vehicle(vehicle)
 
 
 def _connectivity(observation: Observation) -> str:
     link = observation.connectivity
-    return "unknown" if link is None else f"{'a network' if link.online else 'no network'} in reach, {link.kind}"
+    if link is None:
+        return "unknown"
+    return f"{link.kind} in reach" if link.online else "no network in reach"
 
 
 def _gps(fix: GpsFix | None) -> str:

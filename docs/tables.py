@@ -27,6 +27,7 @@ from automotive_cosim.formats.bounds import READERS
 from automotive_cosim.formats.docs import field_docs, member_docs
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.policy import HOUSE
+from automotive_cosim.models.gguf import KNOWN
 from automotive_cosim.publish.leaderboard import board
 from automotive_cosim.safety.space import LIBRARY, read_space
 from automotive_cosim.voice import cabin
@@ -187,6 +188,10 @@ MADE: Mapping[str, Callable[[], str]] = {
     "functions": lambda: f"```text\n{printed('show', 'functions')}\n```",
     "heard": _heard,
     "kinds": _kinds,
+    "known_files": lambda: _table(
+        ("model", "maker", "SHA-256 of the file"),
+        [(each.model, each.maker, f"`{name}`") for name, each in KNOWN.items()],
+    ),
     "leaderboard": _leaderboard,
     "native_formats": lambda: _table(
         ("`format`", "models", "coordinates", "declines with"),

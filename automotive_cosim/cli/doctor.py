@@ -7,19 +7,21 @@ import platform
 import shutil
 import socket
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import typer
 
 from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.contracts.plain import counted
 
+STEP_IN, STEP_OUT = 600, 50
+"""Tokens that a step of T3A with a short prompt reads anew and writes, where the rest is in the runtime's cache."""
 MEMORY_MB = 1000
 """For two workers on the shipped scenarios, each with a warm simulation (benchmarks/README.md)."""
 DISK_MB = 500
@@ -68,13 +70,23 @@ EXTRAS = {
 
 
 def doctor(
+    model: Annotated[
+        str,
+        typer.Option(
+            help="Also try a model of this machine, local/FILE.gguf: what it takes, how fast it is, how long the "
+            "leaderboard's plan takes.",
+            metavar="NAME",
+            show_default=False,
+        ),
+    ] = "",
     as_json: AsJson = False,
 ) -> None:
     """Check this machine and say what is missing and how to install it.
 
     Exit code 1 if episodes cannot run.
     """
-    findings = [check() for check in CHECKS]
+    tried = list(_of_model(model)) if model else []
+    findings = [*(check() for check in CHECKS), *tried]
     ready = all(each.state is not Health.MISSING for each in findings)
     if as_json:
         print_json({"ok": ready, "checks": [asdict(each) for each in findings]})
@@ -84,6 +96,47 @@ def doctor(
         typer.echo("ready" if ready else "not ready: fix what is missing")
     if not ready:
         raise typer.Exit(1)
+
+
+def _of_model(name: str) -> Iterator[Finding]:
+    """
+    Raises:
+        UserError: it is no model of this machine, or its file none that can be run.
+        SetupError: its runtime is not installed.
+    """
+    from automotive_cosim.errors import UserError
+    from automotive_cosim.formats.files import file_sha256
+    from automotive_cosim.models.base import ChatMessage
+    from automotive_cosim.models.gguf import KNOWN, read_model_file
+    from automotive_cosim.models.local import Local, is_local
+    from automotive_cosim.run.plan import BOARD, make_plan, read_plan
+
+    if not is_local(name):
+        raise UserError(f"--model {name!r} is no model of this machine; give local or local/FILE.gguf")
+    model = Local(name)
+    told, sha256 = read_model_file(model.file), file_sha256(model.file)
+    known = KNOWN.get(sha256)
+    yield Finding("model", Health.OK, f"{known.model}, by {known.maker}" if known else told.name)
+    fix = "" if known else "not tried here: compare it with the hash that its maker publishes"
+    yield Finding("its file", Health.OK if known else Health.LIMITED, f"sha256 {sha256}", fix)
+    if not told.has_template:
+        fix = "give a model that was trained to follow instructions"
+        yield Finding("answers", Health.LIMITED, "no template of conversations in the file", fix)
+    room = f"{model.context_tokens:,} tokens of a question (?context=N for more)"
+    fits = 0 < told.context < model.context_tokens
+    yield Finding("context", Health.LIMITED if fits else Health.OK, f"{told.context:,} tokens trained on; {room}")
+    yield Finding("tools", Health.OK, "functions in its template" if told.has_tools else "none in its template")
+    yield Finding("pictures", Health.OK, "none: the local runtime is given text alone")
+    read, wrote = (Local(f"{name}{'&' if '?' in name else '?'}max_tokens={most}") for most in (1, 32))
+    asked = read.chat([ChatMessage("user", "Count. " + " ".join(map(str, range(120))))])
+    said = wrote.chat([ChatMessage("user", "Count from one to fifty, in words.")])
+    in_per_s, out_per_s = asked.tokens_in / asked.seconds, said.tokens_out / max(said.seconds, 0.001)
+    yield Finding("speed", Health.OK, f"{in_per_s:.0f} tokens a second read, {out_per_s:.0f} written, here and now")
+    plan = make_plan(read_plan(Path(BOARD.stem)) | {"agents": ["t3a"]})
+    steps = len(plan.jobs()) * plan.limits.steps
+    minutes = steps * (STEP_IN / in_per_s + STEP_OUT / out_per_s) / 60
+    found = f"{minutes:.0f} minutes at most for one agent, {counted(steps, 'step')}: --plan board --prompt short"
+    yield Finding("the board", Health.OK, found)
 
 
 def _python() -> Finding:

@@ -31,7 +31,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words, model_and_options
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError, UserError, install_hint
-from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
+from automotive_cosim.run.settings import HIDDEN, Budget, EvaluationSettings, RunSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -65,6 +65,7 @@ def evaluate(
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.coverage import unit_of
     from automotive_cosim.run.forecast import forecast
+    from automotive_cosim.run.hidden import COMMITTED, commitment, drawn, read_key
     from automotive_cosim.run.model_check import misfits
     from automotive_cosim.run.plan import make_plan, read_plan
     from automotive_cosim.run.rows import read_trials
@@ -80,6 +81,13 @@ def evaluate(
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = filled(Budget, settings)
     plan = make_plan(values)
+    committed: Json = {}
+    if running.key is not None:
+        key = read_key(running.key)
+        plan = drawn(plan, key)
+        committed = dict(zip(COMMITTED, commitment(key, plan), strict=True))
+    elif plan.split == HIDDEN:
+        raise UserError(f"--split {HIDDEN} is drawn from a key; give --key FILE")
     folder = running.out or _folder(plan)
     choice = filled(ExecutorSettings, settings)
     where = choice.opened()
@@ -88,6 +96,8 @@ def evaluate(
     check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
+    for name, digest in committed.items():
+        console.print(f"{name} {digest}", soft_wrap=True, highlight=False)
     known = read_trials(folder) if (folder / "manifest.json").is_file() else {}
     needs = forecast(plan.jobs(), choice.processes, known.values())
     if running.dry_run:
@@ -97,7 +107,7 @@ def evaluate(
         for lack in lacks:
             console.print(f"to fix before it can run: {lack}", soft_wrap=True, markup=False)
         if as_json:
-            print_json({**needs.as_json(), "to_fix": lacks, "out": str(folder)})
+            print_json({**needs.as_json(), **committed, "to_fix": lacks, "out": str(folder)})
         return
     left = [job for job in plan.jobs() if job.id not in known or known[job.id].error is not None]
     if unfit := tuple(misfits(left)):
@@ -126,7 +136,9 @@ def evaluate(
         counts = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
         made = {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}
         broken = {"agent_failures": list(_failures((*found.rows, *found.drives)))}
-        print_json({**counts, **made, "answer": answer(found), "agents": agents_as_json(found), **broken})
+        print_json(
+            {**counts, **committed, **made, "answer": answer(found), "agents": agents_as_json(found), **broken}
+        )
     else:
         console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from contextlib import nullcontext
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -62,15 +63,21 @@ def verify(
             show_default="a new one each time",
         ),
     ] = None,
+    key: Annotated[
+        Path | None,
+        typer.Option(help="File with the key of a hidden split, to print what was published before."),
+    ] = None,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
     """Check an evaluation or a bundle; exit code 1 if something does not match."""
     from automotive_cosim.publish.verify import verify as verified
+    from automotive_cosim.run.hidden import read_key
 
     seed = secrets.randbelow(2**31) if replay_seed is None else replay_seed
     workers = filled(ExecutorSettings, settings).processes
-    found = verified(path, replays=replay, seed=seed, workers=workers)
+    secret = None if key is None else read_key(key)
+    found = verified(path, replays=replay, seed=seed, key=secret, workers=workers)
     if as_json:
         problems = [asdict(problem) for problem in found.problems]
         print_json({"ok": not problems, "facts": found.facts, "problems": problems, "unknown": found.unknown})
@@ -93,10 +100,17 @@ def verify(
 @app.command()
 @reads_results
 def regrade(
-    folder: Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)],
+    path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
     as_json: AsJson = False,
 ) -> None:
     """Judge the stored runs again by the current checks and print what changes; nothing is written."""
+    from automotive_cosim.publish.archive import unpacked
+
+    with nullcontext(path) if path.is_dir() else unpacked(path) as folder:
+        _regrade(folder, as_json)
+
+
+def _regrade(folder: Path, as_json: bool) -> None:
     from automotive_cosim.run.coverage import coverage
     from automotive_cosim.run.regrade import regrade as judged_again
     from automotive_cosim.run.rows import read_trials

@@ -108,7 +108,10 @@ def search(
     for line in _told_before(space, plan, may_use, how.failures, choice.processes if is_parallel else 1, folder):
         console.print(line, soft_wrap=True)
     if order.dry_run:
-        console.print("nothing was run")
+        with closing(Simulations(count_limit=WARM)) as simulations:
+            for line in DueScreen(space, plan, simulations, folder).check():
+                console.print(line, markup=False, soft_wrap=True)
+        console.print("no agent was asked")
         if as_json:
             print_json({"out": str(folder), "dry_run": True})
         return

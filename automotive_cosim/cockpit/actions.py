@@ -130,7 +130,7 @@ FIELDS: Mapping[ActionType, Takes] = {
         words="holds {on}",
     ),
     ActionType.INPUT_TEXT: Takes(
-        "type up to 120 characters into a text field",
+        "type into a text field",
         target=True,
         required=("text",),
         optional=("clear_text",),
@@ -169,21 +169,20 @@ FIELDS: Mapping[ActionType, Takes] = {
         words="waits {for_s} s",
     ),
     ActionType.ANSWER: Takes(
-        "tell the driver something, in up to 120 characters: it answers a question, it is no warning",
+        "tell the driver something; it is no warning",
         required=("text",),
         words="says “{text}”",
     ),
     ActionType.STATUS: Takes(
         "declare how it ended: complete when it is done; infeasible, after an answer that tells the driver why, "
-        "if it must not or cannot be done (reason law, safety or not_possible); not_needed if there is nothing "
-        "to do (reason already_so or none)",
+        "if it must not or cannot be (law, safety, not_possible); not_needed if there is nothing to do "
+        "(already_so, none)",
         required=("goal_status",),
         optional=("reason",),
         words="declares {goal_status}{because}",
     ),
     ActionType.SHOW_ALERT: Takes(
-        "warn the driver on screen and by voice, when the driver has asked to be warned about danger or limits; "
-        "a text has up to 120 characters",
+        "warn the driver on screen and by voice, who has asked to be warned of danger or limits",
         required=("kind",),
         optional=("severity", "text", "speed_kmh"),
         effect=_alerted,
@@ -220,8 +219,8 @@ FIELDS: Mapping[ActionType, Takes] = {
         words="estimates the position at {text}",
     ),
     ActionType.ASK_DRIVER: Takes(
-        "ask the driver one question (at most 120 characters) about something you cannot find out otherwise. List "
-        "all options, and ask before you change anything. Asking distracts the driver",
+        "ask the driver, whom it distracts, what you cannot find out otherwise; name all options, and ask before "
+        "you change anything",
         required=("text",),
         effect=lambda car, do: car.ask_driver(do.text or ""),
         words="asks the driver “{text}”",
@@ -339,13 +338,15 @@ def grammar(kinds: Collection[ActionType] = UNCALLED) -> str:
 
 
 def signatures(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = False, is_told: bool = True) -> str:
-    """The same in fewer words: each action as a name with its fields, those in brackets optional.
+    """The same in fewer words: each action as a name with its fields, those in brackets optional, and its meaning
+    where the name does not say it.
 
     Args:
         by_point: whether there is no list of elements, so that a target is a point.
     """
     return "\n".join(
-        f"- {kind}({', '.join(_signature(takes, by_point))})" + (f": {_about(takes, by_point)}" if is_told else "")
+        f"{kind}({', '.join(_signature(takes, by_point))})"
+        + (f": {_about(takes, by_point)}" if is_told and takes.words else "")
         for kind, takes in FIELDS.items()
         if kind in kinds
     )

@@ -28,6 +28,8 @@ class LimitSource(StrEnum):
 
     POSTED = "posted"
     """A sign: the map or the scenario's author states it."""
+    VARIABLE = "variable"
+    """A variable sign that shows something now."""
     ASSUMED = "assumed"
     """A default for the road class from when the map was made: advice, never a verdict's basis."""
     LAW = "law"
@@ -52,7 +54,12 @@ class Limit:
     @property
     def is_posted(self) -> bool:
         """Whether a sign says so, even that there is no limit."""
-        return self.source is LimitSource.POSTED
+        return self.source in (LimitSource.POSTED, LimitSource.VARIABLE)
+
+    @property
+    def words(self) -> str:
+        """How it is posted, before a road's name."""
+        return "posted on a variable sign of" if self.source is LimitSource.VARIABLE else "posted on"
 
     @property
     def posted_mps(self) -> float | None:
@@ -246,3 +253,5 @@ class DrivingState:
     """Number of vehicles in the simulation, including the ego."""
     end: EgoEnd | None = None
     """Why the drive ended; set in the ego's last state, which otherwise repeats the previous one."""
+    trailer: bool | None = field(default=None, metadata=RARE)
+    """True if the car tows a trailer, of which only the law knows; None without one."""

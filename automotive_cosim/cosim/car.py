@@ -76,6 +76,8 @@ class Car:
     """Whether the driver has parked on the way."""
     errands: tuple[Errand, ...] = ()
     """What people aboard ask for, by simulation time."""
+    trailer: bool = False
+    """Whether it tows one, for the law: it drives as without."""
     attention: Attention | None = None
     """The driver's; None if nothing can take it."""
     read_sign: tuple[Limit, str, str] | None = None
@@ -120,6 +122,8 @@ class Car:
         driving = traffic.state
         if self.signs is not None:
             driving, passed = self.signs.on(driving), tuple(map(self.signs.on, passed))
+        if self.trailer:
+            driving, passed = replace(driving, trailer=True), tuple(replace(each, trailer=True) for each in passed)
         elapsed_s = driving.time_s - self.departure_s
         local_time = (self.departure.astimezone(UTC) + timedelta(seconds=elapsed_s)).astimezone(
             self.departure.tzinfo

@@ -176,6 +176,7 @@ def couple(
     departure: datetime,
     links: tuple[LinkAt, ...] = (),
     errands: tuple[Errand, ...] = (),
+    trailer: bool = False,
     attention: bool = False,
 ) -> CoSimulation:
     """Couples a drive and a cockpit that has not looked outside yet.
@@ -190,6 +191,7 @@ def couple(
         departure: local time of the traffic's present state, zone-aware.
         links: the best available link over time, in seconds after departure.
         errands: what people aboard ask for, in seconds after departure.
+        trailer: whether the car tows one.
         attention: whether the driver's can be taken, as the plan of the drive says (``EgoPlan.attention``).
     """
     state, geo = traffic.state, Geo()
@@ -203,6 +205,7 @@ def couple(
         state.time_s,
         None if scenario.origin is None else signs_of(geo.atlas.place(*scenario.origin).law),
         errands=tuple(replace(errand, at_s=state.time_s + errand.at_s) for errand in errands),
+        trailer=trailer,
         attention=Attention() if attention else None,
     )
     shared = SharedTraffic(traffic, scenario.sumo.step_length_s)

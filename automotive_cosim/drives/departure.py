@@ -79,6 +79,7 @@ def depart(
             departure=ego.start or scenario.start,
             links=scenario.connectivity,
             errands=script.errands,
+            trailer=script.trailer,
             attention=script.attention,
         )
     except BaseException:

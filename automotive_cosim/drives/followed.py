@@ -27,6 +27,7 @@ NEAR_S = 0.3
 """Times in the timeline and in its words are rounded to a tenth of a second."""
 HEARD = ("takes note of", "cannot ", "has found no place")
 """Answers of a driver who has heard and could do nothing, or has nothing to do."""
+NOT_ASKED = "nothing asked"
 ASKS = re.compile(r"alert (\w+)|.*\b(SlowDown|PullOver)\b")
 
 
@@ -49,14 +50,12 @@ class Followed:
 
     @property
     def words(self) -> str:
-        """In words; empty for an act that asks nothing of the driver."""
-        if not self.answer:
-            return ""
+        """In words."""
         when = "" if self.answered_s is None else f" after {self.answered_s:.1f} s"
         did = f" ({self.did})" if self.did else ""
         over = f", {self.over_s:.0f} s above the limit in the next {FOLLOWED_S:.0f} s" if self.over_s else ""
         drove = f"{self.before_kmh:.0f} to {self.after_kmh:.0f} km/h in {LATER_S:.0f} s"
-        return f"{self.answer}{when}{did}; {drove}{over}"
+        return f"{self.answer or NOT_ASKED}{when}{did}; {drove}{over}"
 
 
 def followed(acts: Sequence[JudgedAct], timeline: Json) -> list[Followed]:
@@ -129,5 +128,5 @@ def told(acts: Sequence[JudgedAct], events: Sequence[JudgedEvent], timeline: Jso
     Without a timeline, as of a drive that is not over, what each was.
     """
     came = followed(acts, timeline) if timeline else ()
-    ends = [f"; {each.words}" if each.words else "" for each in came] or [""] * len(acts)
+    ends = [f"; {each.words}" for each in came] or [""] * len(acts)
     return [was(act, events) + end for act, end in zip(acts, ends, strict=True)]

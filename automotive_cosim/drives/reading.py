@@ -210,6 +210,9 @@ def _read(seen: Observation, vehicle: VehicleState, context: str) -> Gathered:
                 law[label] = _law(text)
     if not known.is_posted and len(defaults) == 1 and defaults[0].is_verified:
         known.limit_kmh = defaults[0].kmh
+    towed_kmh = [each.kmh for each in defaults if "with a trailer" in each.text and each.is_verified and each.kmh]
+    if known.is_posted and towed_kmh:  # the law's for such a car also lowers a sign
+        known.limit_kmh = min(filter(None, (known.limit_kmh, *towed_kmh)))
     stated = [line.kmh for line in defaults if line.kmh is not None]
     known.likely_kmh = known.limit_kmh if known.is_posted else min(stated, default=None)
     known.reduced, known.law = tuple(reduced), law

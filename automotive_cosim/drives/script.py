@@ -73,6 +73,8 @@ class DriveScript:
     """Names of the driver profiles for school zones at their hours, one a zone, over and over again."""
     aboard: tuple[Occupant, ...] = ()
     """Who is in the car besides the driver."""
+    trailer: bool = False
+    """Whether the car tows a trailer, for which the law may have other limits."""
     signals: Mapping[str, bool | float | str] = field(default_factory=dict)
     """VSS paths and values at departure."""
     halts: tuple[HaltAt, ...] = ()
@@ -102,7 +104,7 @@ def script_json(script: DriveScript) -> str:
     values = asdict(script)
     if script.density == 1.0:
         del values["density"]  # scripts from before there was one have the same text
-    for name in ("attention", "coarse", "errands"):
+    for name in ("attention", "coarse", "errands", "trailer"):
         if not values[name]:
             del values[name]
     return json.dumps(json.loads(as_json(values)), indent=1)

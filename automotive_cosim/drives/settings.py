@@ -62,6 +62,8 @@ class DriveSettings:
     appears."""
     aboard: Annotated[str, OneOf((NOBODY, *Kind), "occupant")] | None = None
     """Who rides on the rear seat, behind the passenger's, besides the driver and nobody else."""
+    trailer: bool | None = None
+    """Whether the car tows a trailer, for which the law may have other limits; it drives as without."""
     coarse: bool | None = None
     """Whether SUMO runs in steps of a second, which takes a fraction of the time; the traffic is another then, and
     drivers act only once a second."""
@@ -95,6 +97,7 @@ class DriveSettings:
             driven_s=made.driven_s if self.driven_min is None else self.driven_min * 60,
             density=script.density if self.density is None else self.density,
             coarse=script.coarse if self.coarse is None else self.coarse,
+            trailer=script.trailer if self.trailer is None else self.trailer,
             duration_s=min(script.duration_s, inf if self.minutes is None else self.minutes * 60),
         )
 

@@ -236,6 +236,7 @@ class SituationFinder:
             weather=plan.weather,
             departure=plan.start or self.scenario.start,
             links=self.scenario.connectivity,
+            trailer=start.trailer,
             attention=plan.attention,
         )
         if self._observer.looks:

@@ -35,6 +35,8 @@ PAIR = ("with_place", "without_place")
 TRACES = "traces"
 PICTURES = "pictures"
 LIVE = "live"
+DUE = "due.json"
+"""Of a search's folder, from its dry run on: by trial, why nothing comes due in it; empty if something does."""
 WATCHED = "watched"
 """A file in ``LIVE`` that is locked while somebody watches."""
 

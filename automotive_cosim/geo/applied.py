@@ -98,6 +98,7 @@ def facts_at(
         phenomena=phenomena(weather) if weather else None,
         visibility_m=weather.visibility if weather else None,
         after_sunset=sun.is_set if sun else None,
+        trailer=driving.trailer is True,
     )
 
 

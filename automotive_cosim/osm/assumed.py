@@ -95,6 +95,7 @@ def _facts(tags: Mapping[str, str], zone: str, *, built_up: bool) -> RuleFacts:
         phenomena=frozenset(),
         visibility_m=None,
         after_sunset=False,
+        trailer=False,
     )
 
 

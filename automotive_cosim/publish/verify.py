@@ -34,10 +34,12 @@ from automotive_cosim.publish.episodes import check_trial
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.run.coverage import Coverage, coverage
+from automotive_cosim.run.hidden import COMMITTED, commitment
 from automotive_cosim.run.moments import judged_file
-from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.settings import HIDDEN
 from automotive_cosim.run.store import read_evaluation, trace_file
 from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
@@ -83,6 +85,7 @@ def verify(
     *,
     replays: int = 0,
     seed: int = 0,
+    key: bytes | None = None,
     workers: int = 1,
     tell: Callable[[int, int], None] = lambda done, planned: None,
 ) -> Verified:
@@ -92,6 +95,7 @@ def verify(
         path: of the folder or the bundle.
         replays: how many judged episodes to drive again.
         seed: draws them; the author of the evaluation must not know it, or could leave these drives unforged.
+        key: what the trials were drawn from, if they are of the hidden split.
         workers: processes that judge.
         tell: called with the number of episodes judged so far and of all.
 
@@ -105,7 +109,7 @@ def verify(
             bundle = path
             folder = Path(ends.enter_context(tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-")))
             processes.call(archive.unpack, bundle, folder)
-        read = processes.call(_read, folder, bundle)
+        read = processes.call(_read, folder, bundle, key)
         names = sorted(read.rows)
         jobs, rows = [read.jobs[name] for name in names], [read.rows[name] for name in names]
         problems = [*read.problems]
@@ -147,13 +151,14 @@ class _Read:
     problems: tuple[Problem, ...]
 
 
-def _read(folder: Path, bundle: Path | None) -> _Read:
+def _read(folder: Path, bundle: Path | None, key: bytes | None) -> _Read:
     contents = None if bundle is None else read_contents(folder)
     problems = [] if contents is None else hash_problems(folder, contents)
     problems += [] if bundle is None else _archive_problems(folder, bundle)
     manifest, rows = read_evaluation(folder), read_trials(folder)
     found = coverage(manifest, rows)
-    jobs = {job.id: job for job in make_plan(manifest["plan"]).jobs()}
+    plan = make_plan(manifest["plan"])
+    jobs = {job.id: job for job in plan.jobs()}
     problems += _manifest_problems(manifest, jobs)
     problems += _line_problems(folder, rows, strict=contents is not None)
     problems += [Problem(ROWS, name, "is not in the plan") for name in rows if name not in jobs]
@@ -163,7 +168,7 @@ def _read(folder: Path, bundle: Path | None) -> _Read:
         problems += _count_problems(contents, manifest, found, rows)
     planned = {name: row for name, row in rows.items() if name in jobs}
     known = {name: jobs[name] for name in planned}
-    return _Read(contents, found, known, planned, tuple(_versions(manifest)), tuple(problems))
+    return _Read(contents, found, known, planned, (*_versions(manifest), *_drawn(plan, key)), tuple(problems))
 
 
 # --- the parts ------------------------------------------------------------------------------------------------
@@ -296,6 +301,13 @@ def _replayed(folder: Path, job: TrialSetup, row: TrialRow) -> list[Problem]:
             return list(replay(folder, job, row, simulations))
     except CosimError as error:
         return [Problem(f"traces/{row.id}", "", f"cannot be replayed: {error}")]
+
+
+def _drawn(plan: Plan, key: bytes | None) -> list[str]:
+    """What was published before, to be compared."""
+    if key is None or plan.split != HIDDEN:
+        return []
+    return [f"{name} {digest}" for name, digest in zip(COMMITTED, commitment(key, plan), strict=True)]
 
 
 def _versions(manifest: Json) -> list[str]:

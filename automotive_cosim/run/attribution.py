@@ -33,8 +33,9 @@ NOT_MEASURED = "not measured"
 LATE_ACT = "an act too late"
 LACKING = frozenset({"goal", "in_time", "declared"})
 """The parts of a verdict that fail for want of an act."""
-REDRAWS = 4
-"""Further draws of both, with and without, where leaving an act out changed anything on the road."""
+REDRAWS, LEAST_REDRAWS = 4, 2
+"""Further draws of both, with and without, where leaving an act out changed anything on the road; as many as the
+fewer where it is no more than chance."""
 REDRAWN = 8.0
 """How long redraws and pairs take at most, as a multiple of the trial, so that many acts cost a few times it."""
 TOGETHER_S, MOST_PAIRS = 60.0, 15
@@ -144,19 +145,22 @@ def effects(forks: Forks) -> list[ActEffect]:
     return found
 
 
-def _moves(forks: Forks, left: Sequence[ForkedAct]) -> bool:
-    return any(weighed([compared(forks, left, 0)]))
+def _moves(forks: Forks, left: Sequence[ForkedAct], draws: int) -> bool:
+    """Whether further draws than these are wanted."""
+    changed, chance = weighed([compared(forks, left, draw) for draw in range(draws + 1)])
+    return bool(changed or (chance and draws < LEAST_REDRAWS))
 
 
 def _redrawn(forks: Forks, several: Sequence[Sequence[ForkedAct]], left_s: float) -> tuple[list[ActEffect], float]:
     """What leaving each of several out changed, and how long may be driven yet: what changed the road is redrawn up
     to ``REDRAWS`` times, all of them once before any a second time."""
     forks.drive(several, 0)
-    draws = {number: 0 for number, left in enumerate(several) if _moves(forks, left)}
+    draws = {number: 0 for number, left in enumerate(several) if _moves(forks, left, 0)}
     for draw in range(1, REDRAWS + 1):
-        for number in draws:
-            draws[number] += left_s > 0
-            left_s -= 2 * forks.length_s(several[number])
+        for number, drawn in draws.items():
+            if drawn == draw - 1 and left_s > 0 and _moves(forks, several[number], drawn):
+                draws[number] = draw
+                left_s -= 2 * forks.length_s(several[number])
         forks.drive([several[number] for number, drawn in draws.items() if drawn == draw], draw)
     steps = [[act.step for act in left] for left in several]
     return [without(forks, some, draws.get(number, 0)) for number, some in enumerate(steps)], left_s
@@ -201,7 +205,7 @@ def _came(forks: Forks, left: Sequence[ForkedAct]) -> Iterator[str]:
         "driver": [[event.time_s - begun_s, event.text] for event in driver_events(forks.moments)],
     }
     told = [JudgedAct(each.time_s - begun_s, each.words, Worth.NEUTRAL) for act in left for each in act.acts]
-    return (came.words for came in followed(told, timeline) if came.words)
+    return (came.words for came in followed(told, timeline))
 
 
 def _missing(forks: Forks) -> Iterator[ActEffect]:

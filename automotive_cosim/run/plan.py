@@ -34,13 +34,15 @@ from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.outside import check_agent
-from automotive_cosim.run.settings import ALL_SUITES, BOTH, LIVE, SUITES, EvaluationSettings
+from automotive_cosim.run.settings import ALL_SUITES, BOTH, HIDDEN, LIVE, SUITES, EvaluationSettings
 from automotive_cosim.run.trial import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
+BOARD = Path(__file__).with_name("board.toml")
+"""The plan of the leaderboard's first table."""
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
 SPARE_TRAFFIC = (1_000_001, 1_000_002)
@@ -194,9 +196,9 @@ class Plan(EvaluationSettings):
         """
         if (most := self.most_runs()) > MOST_RUNS:
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
-        who = product(self.agents, self.models, (*self._unfolded(), *self.trials), range(self.repeats))
+        who = product(self.agents, self.models, (*self.unfolded(), *self.trials), range(self.repeats))
         every = (self._job(agent, model, trial, repeat) for agent, model, trial, repeat in who)
-        jobs = {job.id: job for job in every if self.split == BOTH or self.split == job.split}
+        jobs = {job.id: job for job in every if self.split in (BOTH, HIDDEN, job.split)}
         return tuple(sorted(jobs.values(), key=_place))
 
     def most_runs(self) -> int:
@@ -216,11 +218,11 @@ class Plan(EvaluationSettings):
     def left_out(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that cannot run in any of the scenarios."""
         placed = {task.id for task, _ in self._placed()}
-        return tuple(task.id for task in self._spoken() if task.id not in placed)
+        return tuple(task.id for task in self.spoken() if task.id not in placed)
 
     def unspoken(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that have no phrasings in one of the languages."""
-        spoken = {task.id for task in self._spoken()}
+        spoken = {task.id for task in self.spoken()}
         return tuple(task_id for task_id in self._chosen() if task_id not in spoken)
 
     def beyond_the_list(self) -> tuple[str, ...]:
@@ -234,7 +236,7 @@ class Plan(EvaluationSettings):
             return f"no drive with these seeds is in the split {self.split!r}; give other seeds"
         if self._placed() and all(task.needs_picture for task, _ in self._placed()):
             return "these tasks need the picture, which these conditions hide; give see = both, interface = touch"
-        if not self._spoken():
+        if not self.spoken():
             return (
                 f"none of the tasks has phrasings in {languages_in_words(self.languages)}; those of the "
                 "hard suite do (--suite hard)"
@@ -249,7 +251,7 @@ class Plan(EvaluationSettings):
 
     def _placed(self) -> list[tuple[Task, str | None]]:
         """Each task with each scenario that it runs in; None for its own."""
-        chosen = self._spoken()
+        chosen = self.spoken()
         if not self.scenarios:
             return [(task, None) for task in chosen]
         shipped = scenarios.shipped()
@@ -259,7 +261,7 @@ class Plan(EvaluationSettings):
             if self.everywhere or name not in shipped or task.runs_whole_in(name)
         ]
 
-    def _spoken(self) -> list[Task]:
+    def spoken(self) -> list[Task]:
         """The chosen tasks that have phrasings in every language."""
         chosen = [CATALOGUE[task_id] for task_id in self._chosen()]
         return [task for task in chosen if set(self.languages) <= set(task.languages)]
@@ -272,7 +274,7 @@ class Plan(EvaluationSettings):
         """Each family of drives with each scenario that it runs in; empty for its own."""
         return list(product(families_named(self.drives), self.scenarios or ("",)))
 
-    def _unfolded(self) -> Iterator[PlannedTrial]:
+    def unfolded(self) -> Iterator[PlannedTrial]:
         """The trials that the lists stand for."""
         for (task, place), seed, conditions in product(self._placed(), self.seeds, combined(self)):
             for half in () if task.needs_picture and conditions.hides_pictures else task.halves:
@@ -359,12 +361,12 @@ def _words(task: Task) -> frozenset[str]:
 
 
 def read_plan(path: Path) -> dict[str, Any]:
-    """The values of a ``plan.toml``, for ``make_plan``.
+    """The values of a ``plan.toml``, for ``make_plan``; ``board`` is the leaderboard's, which the package has.
 
     Raises:
         UserError: it cannot be read, is not TOML, or has a wrong or surplus field.
     """
-    document = read_toml(path)
+    document = read_toml(BOARD if str(path) == BOARD.stem and not path.exists() else path)
     document = replace(document, table=with_files(document.table))
     document.read(Plan)
     return document.table

@@ -15,9 +15,9 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import OneOf, Option
 from automotive_cosim.tasking.sets import Split, Suite
 
-ALL_SUITES, LIVE, BOTH = "all", "live", "both"
+ALL_SUITES, LIVE, BOTH, HIDDEN = "all", "live", "both", "hidden"
 SUITES = (*Suite, ALL_SUITES, LIVE)
-SPLITS = (*Split, BOTH)
+SPLITS = (*Split, BOTH, HIDDEN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,8 @@ class EvaluationSettings(ConditionLists):
     held_out: bool = False
     """Use only each task's held-out phrasing, which `rules` is not built from; otherwise any phrasing is drawn."""
     split: Annotated[str, OneOf(SPLITS, "split")] = BOTH
-    """Only the episodes of one public split, by seed and phrasing: `dev` or `test`; `both` for all."""
+    """Only the episodes of one public split, by seed and phrasing: `dev` or `test`; `both` for all; `hidden` for
+    those that a key draws (`--key`)."""
 
 
 class Pictures(StrEnum):
@@ -73,7 +74,10 @@ class RunSettings:
     """Which plan is evaluated, how and where to; however it is run, the same rows come out."""
 
     plan: Path | None = None
-    """TOML file with the plan; options override it."""
+    """TOML file with the plan, or `board` for the leaderboard's; options override it."""
+    key: Path | None = None
+    """File with the key that draws seeds and places of the hidden split; its hash, and that of the drawn trials,
+    are told before anything runs."""
     out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
     """Results folder; an existing one is resumed."""
     dry_run: bool = False

@@ -27,7 +27,7 @@ import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
-from automotive_cosim.formats.layout import PICTURES, TRACES
+from automotive_cosim.formats.layout import DUE, PICTURES, TRACES
 from automotive_cosim.formats.writing import add_line, growing, locked, make_folder, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
 from automotive_cosim.run.versions import STAMPED, SUITE, installed
@@ -306,7 +306,7 @@ def _check(folder: Path) -> None:
     if folder.exists() and not folder.is_dir():
         raise UserError(f"{folder} is a file; give --out a folder")
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "manifest.json").exists():
-        begun = {TRACES, PICTURES, "lock"}
+        begun = {TRACES, PICTURES, DUE, "lock"}
         if not {path.name for path in folder.iterdir()} <= begun:
             raise UserError(f"{folder} contains other files; give --out an empty folder or an evaluation's")
 

@@ -40,8 +40,9 @@ from automotive_cosim.traffic.fork import Simulations
 
 NO_MODEL = "none"
 WARM_UPS_S: Mapping[str, float] = {
-    "alpine_pass": 3.6, "autobahn": 4.2, "beauce": 2.2, "border": 2.0, "grid": 1.6, "gulf": 4.5, "london": 4.3,
-    "new_york": 3.8, "nordic": 2.9, "paris_centre": 7.4, "peripherique": 7.5, "sydney": 3.4, "tokyo": 7.2,
+    "alpine_pass": 3.6, "autobahn": 4.2, "beauce": 2.2, "border": 2.0, "grid": 1.6, "gulf": 4.5, "inntal": 2.0,
+    "london": 4.3, "new_york": 3.8, "nordic": 2.9, "paris_centre": 7.4, "peripherique": 7.5, "sydney": 3.4,
+    "tokyo": 7.2,
 }  # fmt: skip
 """Processor seconds of loading and warming up each shipped scenario, with the process that does (November 2026)."""
 WARM_UP_S = 10.0

@@ -19,14 +19,13 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.layout import DUE
 from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.safety.space import FactorChoices, FactorRange, FactorValue, SearchPoint, Space, said
 from automotive_cosim.safety.trying import job_of, trial_of
 from automotive_cosim.traffic.fork import Simulations
 
-FILE = "due.json"
-"""Of a search's folder: by trial, why nothing comes due in it; empty if something does."""
 TIMES_S = (STAGE_S, 30.0, 90.0, 120.0, 150.0)
 """When something is staged, if a space with a stage does not say: what comes too suddenly at one instant, or never,
 comes in time at another."""
@@ -113,7 +112,7 @@ class DueScreen:
 
     def __post_init__(self) -> None:
         """Reads what is known."""
-        path = self.folder / FILE
+        path = self.folder / DUE
         self._known = dict(read_json(path)) if path.is_file() else {}
 
     @property
@@ -136,7 +135,7 @@ class DueScreen:
         if name not in self._known:
             self.tried += 1
             self._known[name] = why_not(job, self.space.rule.events, self.simulations)
-            write_whole(make_folder(self.folder) / FILE, json.dumps(self._known, indent=1) + "\n")
+            write_whole(make_folder(self.folder) / DUE, json.dumps(self._known, indent=1) + "\n")
         return self._known[name]
 
     def is_due(self, point: SearchPoint) -> bool:
@@ -148,7 +147,8 @@ class DueScreen:
         return next(filter(self.is_due, self._near(point)), None)
 
     def check(self) -> Iterator[str]:
-        """Tries what the space stages where, and says what cannot come about, and how to mend it.
+        """Tries what the space stages where, and says what cannot come about, how to mend it, and where how much
+        comes due.
 
         The space's nominal point becomes one at which something is due, by place, time or seed, if there is one.
 
@@ -156,17 +156,20 @@ class DueScreen:
             UserError: nothing comes due anywhere.
         """
         if not self.screens:
+            yield "nothing has to be tried first: every run of this space can be judged"
             return
         nominal = self.space.nominal
         several = [each for each in self.space.factors if each.name in WHAT and isinstance(each, FactorChoices)]
         there: list[SearchPoint] = []
-        for values in list(product(*(each.values for each in several)))[:MOST_KINDS]:
+        tried = list(product(*(each.values for each in several)))[:MOST_KINDS]
+        for values in tried:
             fixed = dict(zip((each.name for each in several), values, strict=True))
             point = {**nominal, **fixed}
-            if (due := self.placed(point)) is not None:
+            near = [*self._near(point), *self._elsewhere(point)]
+            if (due := next(filter(self.is_due, near), None)) is not None:
                 there.append(due)
                 continue
-            reasons = [self.why_not(near) for near in self._near(point)]
+            reasons = [self.why_not(each) for each in near]
             told = ", ".join(f"{reason} ({reasons.count(reason)})" for reason in dict.fromkeys(reasons))
             mend = next((mend for mend in MENDS if self.is_due({**point, mend[0]: mend[1]})), None)
             mended = (
@@ -182,7 +185,18 @@ class DueScreen:
         changed = ", ".join(said(name, value) for name, value in there[0].items() if value != nominal[name])
         if changed:
             self.space = nominal_at(self.space, there[0])
-            yield f"the nominal combination has {changed}: as written, nothing is due there"
+            yield f"as written, nothing is due with everything nominal; taken as nominal: {changed}"
+        of = " and ".join(each.name for each in several)
+        many = f"{len(there)} of {counted(len(tried), 'choice')} of {of}"
+        yield f"driven without an agent: something comes due in {many}"
+
+    def _elsewhere(self, point: SearchPoint) -> Iterator[SearchPoint]:
+        """Two points in which all is another but the traffic, and what is staged where."""
+        moving = [each for each in self.space.factors if each.name not in (*WHAT, "seed", "density")]
+        for step in (STEP, 2 * STEP):
+            moved = {each.name: each.at((each.unit(point[each.name]) + step) % 1.0) for each in moving}
+            if moved.items() - point.items():
+                yield {**point, **moved}
 
     def _near(self, point: SearchPoint) -> list[SearchPoint]:
         """The point and those beside it, each once."""

@@ -8,6 +8,7 @@ in which anything is drawn. Nothing depends on the half, so that both halves of 
 
 from __future__ import annotations
 
+import hmac
 from dataclasses import dataclass
 from enum import StrEnum
 from hashlib import blake2b
@@ -60,6 +61,11 @@ class Draws:
     def _entropy(self, purpose: Purpose) -> np.random.SeedSequence:
         anew = (self.redrawn,) if self.redrawn and purpose is Purpose.CONTENT else ()
         return np.random.SeedSequence(self.number, spawn_key=(_key(self.task_id), _key(purpose), *anew))
+
+
+def keyed(key: bytes, *names: str) -> int:
+    """A number below ``SEED_LIMIT`` that nobody can tell without the key."""
+    return int.from_bytes(hmac.digest(key, "\0".join(names).encode(), "sha256")) % SEED_LIMIT
 
 
 def _key(name: str) -> int:

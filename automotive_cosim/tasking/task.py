@@ -187,6 +187,8 @@ class Start:
     """Calls, messages and changes of the car that nobody commands, in seconds after the hand-over."""
     sign_camera: bool = True
     """Whether the car reads limit signs; without it, the status bar shows no sign."""
+    trailer: bool = False
+    """Whether the car tows a trailer, for which the law may have other limits."""
     lacks: tuple[Lacking, ...] = ()
     """What the car was not fitted with, or is out of order."""
     sensors: Mapping[str, Any] = field(default_factory=dict)

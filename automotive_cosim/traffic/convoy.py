@@ -60,7 +60,8 @@ class Convoy:
     def advance(
         self, duration_s: float, of: Iterable[str], beat: Callable[[], None]
     ) -> tuple[dict[str, Advance], list[str]]:
-        """Lets the traffic run, as long as an equipped car drives in it or waits for a gap.
+        """Lets the traffic run, as long as an equipped car drives in it or waits for a gap; if no car's states are
+        wanted, until one enters.
 
         Args:
             duration_s: for how long.
@@ -91,6 +92,8 @@ class Convoy:
             self._drives |= new
             entered += new
             beat()
+            if new and not states:
+                break
         made = {car: Advance(tuple(instant.state for instant in states[car]), tuple(events[car])) for car in states}
         return made, entered
 

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from automotive_cosim.contracts import Answer, DrivingState, RoadRequest, RoadShapes, RoadSnapshot, RouteOption
+from automotive_cosim.contracts import (
+    Answer,
+    DrivingState,
+    Reroute,
+    RoadRequest,
+    RoadShapes,
+    RoadSnapshot,
+    RouteOption,
+)
 from automotive_cosim.traffic.base import Advance, Event
 from automotive_cosim.traffic.ego import Driver
 from automotive_cosim.traffic.instant import Instant
@@ -39,8 +47,8 @@ class EgoDrive:
             road: what moves the ego.
             driver: its driver.
             now: the first instant.
-            take: SUMO goes on driving it as it does until the cockpit asks for something; then this is called, and
-                from there on the driver drives. None where the driver does from the first instant.
+            take: SUMO goes on driving it as it does until the cockpit asks for something other than a route; then
+                this is called, and from there on the driver drives. None where he does from the first instant.
         """
         self._road = road
         self._driver = driver
@@ -80,13 +88,18 @@ class EgoDrive:
         """Whether they are on."""
         return self._driver.hazard_lights
 
+    @property
+    def driver_state(self) -> tuple[object, ...]:
+        """What the driver has in mind, and draws next (``Driver.state``)."""
+        return self._driver.state
+
     def proceed(self, now: Instant, events: tuple[Event, ...]) -> tuple[Event, ...]:
         """Takes the instant after a step and its events, and gives the driver his turn; all that happened."""
         self._now = now
         return events if self.has_ended or self._take is not None else events + self._driver.tick(now)
 
     def request(self, request: RoadRequest) -> Answer:
-        if self._take is not None and not self.has_ended:
+        if self._take is not None and not self.has_ended and not isinstance(request, Reroute):
             self._take()
             self._take = None
             self._driver.tick(self._now)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -231,6 +231,12 @@ class Driver:
         self._headway_s = self._profile.headway_s
         self._choose_speed()
         self._choose_braking()
+
+    @property
+    def state(self) -> tuple[object, ...]:
+        """All that decides how the driver goes on, beside the road and the plan."""
+        mind = (getattr(self, each.name) for each in fields(self) if each.name not in ("plan", "pedals", "_draws"))
+        return *mind, self._draws.bit_generator.state
 
     def request(self, request: RoadRequest, state: DrivingState) -> Answer:
         """Receives a request. What does not depend on the driver happens now, the rest after the reaction time."""

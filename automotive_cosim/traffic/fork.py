@@ -263,6 +263,16 @@ class RemoteRoad(_Remote):
         traffic = self._cars[car] = RemoteTraffic(self, state, car)
         return traffic
 
+    def branch(self) -> tuple[RemoteTraffic, ...]:
+        """All equipped cars on an exact copy of the road, on which no cockpit has asked for anything since."""
+        road = self._copied(None)
+        return tuple(traffic._on(road) for traffic in list(self._cars.values()))
+
+    def _copied(self, original: RemoteTraffic | None) -> RemoteRoad:
+        road = RemoteRoad(self.source, self.source.branched(self._process), original)
+        road.time_s = self.time_s
+        return road
+
     def leave(self, car: str) -> None:
         """A cockpit is no longer used; without one, the process ends, unless it is held."""
         if self._cars.pop(car, None) is None:
@@ -422,9 +432,10 @@ class RemoteTraffic(_Remote):
     def branch(self) -> RemoteTraffic:
         """An exact copy that is independent from this instant, even if this one is closed. Other equipped cars do
         in it what they do beside the original, as far as that has driven; then they go on by themselves."""
-        source = self.road.source
-        road = RemoteRoad(source, source.branched(self._process), self if self.road.is_shared else None)
-        road.time_s = self.road.time_s
+        return self._on(self.road._copied(self if self.road.is_shared else None))
+
+    def _on(self, road: RemoteRoad) -> RemoteTraffic:
+        """This drive on a copy of its road."""
         twin = road.take(self.car, pack_state(self._state))
         twin._ahead.extend(self._ahead)
         return twin

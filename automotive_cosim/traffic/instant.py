@@ -176,6 +176,7 @@ class Seen:
             self.hazard_lights,
             self.vehicle_count,
             None,
+            None,
         )
 
 

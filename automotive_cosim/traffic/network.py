@@ -133,6 +133,8 @@ class Edge:
     """Limits that are posted for certain hours."""
     signed_lanes: frozenset[str] = frozenset()
     """Lanes with a limit of their own on a sign."""
+    variable_lanes: frozenset[str] = frozenset()
+    """Lanes over which a variable sign shows something now."""
     timed_limit: TimedLimit | None = None
     """The one of them that is in force; ``limit_mps`` is the present limit."""
     timed_access: tuple[TimedAccess, ...] = ()

@@ -7,6 +7,7 @@ name, so nothing here knows what is called.
 from __future__ import annotations
 
 from collections.abc import Callable
+from hashlib import sha256
 from typing import Protocol, TypeVar
 
 from automotive_cosim.traffic.convoy import Convoy
@@ -74,3 +75,12 @@ class Running:
         for each in self.watchers:
             each.after_step()
         self._beat()
+
+
+def fingerprint(running: Running) -> str:
+    """Of all that decides how the traffic goes on, as far as SUMO tells: two drives that have been the same so far,
+    and have the same one, stay the same as long as nobody asks for anything else."""
+    sumo, drive = running.sumo, running.drive
+    cars = [(each, sumo.position(each), sumo.speed(each)) for each in sumo.vehicle_ids()]
+    lights = [(each, sumo.light_state(each)) for each in sumo.light_ids()]
+    return sha256(repr((cars, lights, drive and drive.driver_state)).encode()).hexdigest()

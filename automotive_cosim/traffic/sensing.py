@@ -174,8 +174,10 @@ class Sensor:
         if lane_id in edge.lane_ids:
             index = edge.lane_ids.index(lane_id)
             lane_mps = edge.lane_mps[index]
-            has_none = edge.limit_mps is None and (not edge.signed_lanes or lane_mps >= NO_LIMIT_FROM_MPS)
+            signed = edge.signed_lanes | edge.variable_lanes
+            has_none = edge.limit_mps is None and (not signed or lane_mps >= NO_LIMIT_FROM_MPS)
             source = LimitSource.POSTED if lane_id in edge.signed_lanes else edge.limit_source
+            source = LimitSource.VARIABLE if lane_id in edge.variable_lanes else source
             own = Limit(None if has_none else lane_mps, source)
             return Lane(index, own, friction, edge.limit_hours)
         return Lane(sumo.lane_index(self._ego), edge.limit, friction, edge.limit_hours)

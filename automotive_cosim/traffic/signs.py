@@ -40,8 +40,9 @@ class _Kept:
 
 class Signs:
     """Sets and removes limits. The lowest limit of the incidents applies, else the network's; where a sign of the
-    scenario shows another speed than the road was built with, the lower of both. A sign counts up to the far side
-    of the junction at the end of its road, as the ego's limit does; lanes across it have it too."""
+    scenario shows another speed than the road was built with, the lower of both. A sign over some lanes holds in
+    them, and one over all of them is known from afar. A sign counts up to the far side of the junction at the end
+    of its road, as the ego's limit does; lanes across it have it too."""
 
     def __init__(self, sumo: LibSumo, network: Network, variable: Iterable[str]) -> None:
         """Keeps watch on the edges on which SUMO itself changes the limit."""
@@ -154,8 +155,10 @@ class Signs:
         kept = self._keep(edge_id)
         built, now, lanes_mps = kept.built, self._edges[edge_id], kept.sumo_mps
         limit_mps, source = built.limit_mps, built.limit_source
-        if lanes_mps != kept.built_mps:
-            limit_mps, source = max(self._for_cars(kept, lanes_mps)), LimitSource.POSTED
+        each = zip(built.lane_ids, lanes_mps, kept.built_mps, strict=True)
+        lit = frozenset(lane for lane, shown_mps, built_mps in each if shown_mps != built_mps)
+        if len(lit) == len(built.lane_ids):
+            limit_mps, source = max(self._for_cars(kept, lanes_mps)), LimitSource.VARIABLE
         over = self._over.get(edge_id)
         ours = bool(over or now.timed_limit) and built.cars_mps is None
         if ours:
@@ -170,7 +173,12 @@ class Signs:
         kept.ours = ours
         cars_mps = self._for_cars(kept, lanes_mps)
         self._edges[edge_id] = replace(
-            now, speed_mps=max(cars_mps), lane_mps=cars_mps, limit_mps=limit_mps, limit_source=source
+            now,
+            speed_mps=max(cars_mps),
+            lane_mps=cars_mps,
+            limit_mps=limit_mps,
+            limit_source=source,
+            variable_lanes=frozenset() if ours else lit,
         )
         self.changed = True
 

@@ -6,9 +6,19 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, make_agent, prompt_parts
+from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.prompt import action_words, look_back, situation, step, turn
 from automotive_cosim.cockpit.actions import grammar, signatures
-from automotive_cosim.contracts import UNCALLED, Action, ActionType, Direction, Feedback, FeedbackCode, GpsFix
+from automotive_cosim.contracts import (
+    UNCALLED,
+    Action,
+    ActionType,
+    BoundingBox,
+    Direction,
+    Feedback,
+    FeedbackCode,
+    GpsFix,
+)
 from automotive_cosim.contracts.given import Interface, PromptLength
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.geo.text import Line, within_budget
@@ -105,6 +115,37 @@ def test_the_list_holds_the_indices_of_the_elements_and_skips_the_invisible(obse
     assert [line.index for line in Page.read(turn(PROFILES["t3a"], seen)).screen] == [0, 2]
 
 
+@pytest.mark.parametrize("label", [
+    "Fan 30 %", "21.0 °C", 'Say "3 Off", 4 On', "a, 7 Save [on]", "Ice - Fire", "12 Monkeys", "[on]", " x ",
+    "C:\\3, 4 b",
+])  # fmt: skip
+def test_no_text_of_an_element_is_read_as_another_element(label, observation, button):
+    shown = replace(button("b", label), class_name="TextView", is_clickable=False)
+    seen = observation("x", elements=(button("a", label), shown, button("c")))
+    listed = Page.read(turn(PROFILES["t3a"], seen)).screen
+    assert [line.index for line in listed] == [0, 2]
+    assert listed[0].text == one_line(label)
+
+
+def test_what_is_shown_stands_once_and_the_status_bar_last(observation, button):
+    def shown(text, meaning="", y_px=500):
+        box = BoundingBox(0, y_px, 90, y_px + 20)
+        return replace(
+            button(text, text),
+            class_name="TextView",
+            is_clickable=False,
+            content_description=meaning,
+            bbox_pixels=box,
+        )
+
+    elements = (
+        shown("50", "Speed in km/h", 20), button("a", "Fan"), shown("km/h"), shown("50", "Speed in km/h"),
+        shown("Range"), shown("279 km", "Range"), shown("Paper Fields"),
+    )  # fmt: skip
+    told = prompt_parts.told(elements).splitlines()
+    assert told == ["button: 1 Fan", "shown: Range: 279 km, Paper Fields, Speed in km/h: 50"]
+
+
 def test_a_street_with_a_line_break_makes_no_line_of_the_context():
     lines = [Line("Road: A\n## The car\u2028Speed limit here: 130 km/h", "road"), Line("Time: now", "sky")]
     text = within_budget(lines, 1000)
@@ -114,7 +155,7 @@ def test_a_street_with_a_line_break_makes_no_line_of_the_context():
 def test_the_grammar_is_that_of_the_action_types(observation):
     assert signatures() in turn(PROFILES["asurada"], observation("x"))
     assert set(signatures(PROFILES["t3a"].actions).splitlines()) < set(signatures().splitlines())
-    assert all(f"- {kind}(" in signatures() and f'"{kind}"' in grammar() for kind in UNCALLED)
+    assert all(f"{kind}(" in signatures() and f'"{kind}"' in grammar() for kind in UNCALLED)
 
 
 @pytest.mark.parametrize("name", ["m3a", "asurada"])
@@ -148,10 +189,10 @@ def test_what_changed_is_told_and_another_screen_as_such(button):
     assert prompt_parts.changes(before, before) == "nothing"
     assert (
         prompt_parts.changes(before, (button("a", "Fan 100 %"), button("b", "Max")))
-        == 'gone: "Fan 30 %"\nnew: "Fan 100 %"'
+        == "gone: Fan 30 %\nnew: Fan 100 %"
     )
     many = tuple(button(f"{n}", f"Entry {n}") for n in range(20))
-    assert prompt_parts.changes(many, before) == 'another screen is shown: "Fan 30 %", "Max"'
+    assert prompt_parts.changes(many, before) == "another screen is shown: Fan 30 %, Max"
 
 
 def test_a_reflecting_agent_is_told_what_the_driver_answered(observation):

@@ -170,6 +170,7 @@ DRY = ("--dry-run",)
 NOT_RUN = None
 
 TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
+    (r"(doctor|eval) .*(FILE\.gguf|--key)", NOT_RUN, "needs a model or a key; tests/models and tests/run try such"),
     (r"eval .*failures/", NOT_RUN, "needs a search; tests/safety/test_trying.py has one"),
     (r"(search|measures)", NOT_RUN, "takes minutes; tests/safety and tests/measures try them"),
     (r"export", NOT_RUN, "needs a recorded drive; tests/exchange has one"),
@@ -230,8 +231,6 @@ def place(tmp_path_factory):
     (folder / "tasks").mkdir()
     (folder / "tasks" / "own.py").write_text("TASKS = ()\n", encoding="utf-8")
     shutil.copytree(TOP / "docs/examples", folder / "docs/examples")
-    (folder / "docs/leaderboard").mkdir()
-    shutil.copyfile(TOP / "docs/leaderboard/plan.toml", folder / "docs/leaderboard/plan.toml")
     shutil.copytree(TOP / "docs/examples/my-agent", folder / "my-agent")
     (folder / "prompts").mkdir()
     (folder / "prompts/careful.md").write_text("Be careful.\n", encoding="utf-8")

@@ -62,6 +62,7 @@ DAY = RuleFacts(
     phenomena=frozenset(),
     visibility_m=20_000.0,
     after_sunset=False,
+    trailer=False,
 )
 
 

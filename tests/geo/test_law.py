@@ -27,6 +27,8 @@ NIGHT = {"after_sunset": True}
 TOWN = {"built_up": True}
 MOTORWAY = {"motorway": True, "dual_carriageway": True, "road_class": "motorway", "lanes": 2}
 
+TRAILER = {"trailer": True}
+
 
 def _on(month: int, day: int, hour: int = 12, year: int = 2026) -> dict[str, object]:
     return {"local_time": datetime(year, month, day, hour, tzinfo=UTC)}
@@ -43,6 +45,13 @@ def rules(geo: Geo) -> dict[str, Rule]:
 
 
 STATEMENTS: list[tuple[str, str, Mapping[str, object], object]] = [
+    # a car with a trailer
+    ("DE.limit.trailer", "§18(5)", MOTORWAY | TRAILER, 80),
+    ("DE.limit.trailer", "§18(5)", MOTORWAY, None),
+    ("AT.limit.trailer", "§58", MOTORWAY | TRAILER, 100),
+    ("ES.limit.trailer.motorway", "48", MOTORWAY | TRAILER, 90),
+    ("ES.limit.trailer", "48", TRAILER, 80),
+    ("SE.limit.trailer", "4:20", MOTORWAY | TRAILER, 80),
     # France
     ("FR.limit.motorway", "R413-2", MOTORWAY, 130),
     ("FR.limit.motorway.rain", "R413-2", MOTORWAY | RAIN, 110),

@@ -1,8 +1,10 @@
 """A small model in this process: found, asked, held to its context; the runtime played by a stand-in, and itself
 where it is installed."""
 
+import hashlib
 import json
 import re
+import struct
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,6 +18,7 @@ from automotive_cosim.contracts import BoundingBox, Element, Feedback, FeedbackC
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ModelError, SetupError, UserError, install_hint
 from automotive_cosim.models import ChatMessage, Local, local, make_model
+from automotive_cosim.models.gguf import ModelFile, read_model_file
 from automotive_cosim.run.model_check import misfit
 
 FORM = {"type": "object", "properties": {"action": {"type": "object"}}, "required": ["action"]}
@@ -134,6 +137,61 @@ def test_what_is_missing_is_named_with_the_command_that_installs_it(tmp_path, mo
     monkeypatch.setattr(local, "find_spec", lambda name: None)
     with pytest.raises(SetupError, match=re.escape(install_hint("models"))):
         make_model(f"local/{tmp_path}/small.gguf")
+
+
+def gguf(*pairs):
+    """A GGUF file of these keys: texts, numbers, and lists of either."""
+
+    def text(value):
+        return struct.pack("<Q", len(value.encode())) + value.encode()
+
+    def value(given):
+        match given:
+            case str():
+                return 8, text(given)
+            case int():
+                return 4, struct.pack("<I", given)
+        inner = [value(each) for each in given]
+        return 9, struct.pack("<IQ", inner[0][0], len(inner)) + b"".join(each for _, each in inner)
+
+    told = [(name, *value(given)) for name, given in pairs]
+    body = b"".join(text(name) + struct.pack("<I", kind) + data for name, kind, data in told)
+    return b"GGUF" + struct.pack("<IQQ", 3, 0, len(told)) + body
+
+
+ABOUT = gguf(
+    ("general.architecture", "llama"), ("tokenizer.ggml.tokens", ["a", "b"]), ("llama.context_length", 4096),
+    ("tokenizer.ggml.scores", [1, 2, 3]), ("tokenizer.chat_template", "{% if tools %}"), ("general.name", "Small"),
+)  # fmt: skip
+
+
+def test_a_file_says_what_fits(tmp_path):
+    (tmp_path / "m.gguf").write_bytes(ABOUT)
+    assert read_model_file(tmp_path / "m.gguf") == ModelFile("Small", 4096, has_template=True, has_tools=True)
+    (tmp_path / "base.gguf").write_bytes(gguf(("general.architecture", "llama")))
+    assert read_model_file(tmp_path / "base.gguf") == ModelFile("base", 0, has_template=False, has_tools=False)
+
+
+@pytest.mark.parametrize("content", [
+    b"", b"GGU", b"GGUF", b"hello", ABOUT[:40], ABOUT[:-3], b"GGUF" + struct.pack("<IQQ", 9, 0, 1),
+    b"GGUF" + struct.pack("<IQQ", 3, 0, 2**63), b"GGUF" + struct.pack("<IQQQ", 3, 0, 1, 2**62),
+])  # fmt: skip
+def test_a_file_that_is_no_model_is_told_in_a_line(content, tmp_path):
+    (tmp_path / "m.gguf").write_bytes(content)
+    with pytest.raises(UserError, match=r"m\.gguf is ") as raised:
+        read_model_file(tmp_path / "m.gguf")
+    assert "\n" not in str(raised.value)
+
+
+def test_doctor_tries_a_model(file, cli, sumo):
+    file.write_bytes(ABOUT)
+    told = json.loads(cli("doctor", "--model", f"local/{file}", "--json").out)
+    checks = {each["about"]: each for each in told["checks"]}
+    assert checks["model"]["found"] == "Small"
+    assert hashlib.sha256(ABOUT).hexdigest() in checks["its file"]["found"]
+    assert "4,096" in checks["context"]["found"]
+    assert checks["context"]["state"] == "limited", "by default, a question may be longer than it was trained on"
+    assert "minutes" in checks["the board"]["found"]
 
 
 @pytest.mark.long

@@ -133,3 +133,12 @@ def test_what_is_no_more_than_chance_is_no_effect() -> None:
     assert effect.is_neutral
     assert effect.effect == "neutral; no more than chance: +8.0 s above the limit (draws differ by 11)"
     assert json.loads(json.dumps(effect.changed)) == {}
+
+
+@pytest.mark.parametrize("folder", ["slow"], indirect=True)
+def test_where_an_act_makes_no_difference_any_more_the_trial_itself_goes_on(forks: Forks) -> None:
+    until_s = forks.moments[-1].time_s
+    slow, says = (list(forks.driving(act.fork, frozenset([act.step]), 0, until_s)) for act in forks.acts[:2])
+    assert max(map(len, slow)) == 1, "the road is another from there on"
+    assert max(map(len, says)) > 1, "what comes is taken from the trial"
+    assert told([moment for part in says for moment in part]) == told(forks.moments[forks.acts[1].fork.at :])

@@ -7,6 +7,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts.given import Clock
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.run.coverage import Coverage
+from automotive_cosim.run.hidden import commitment, drawn, read_key
 from automotive_cosim.run.plan import choose, make_plan, read_plan
 from automotive_cosim.run.trial import Limits
 from automotive_cosim.tasking.sets import Split, Suite
@@ -74,6 +75,33 @@ def test_the_hard_suite_has_its_own_limit_of_steps():
 
 
 @pytest.mark.slow
+def test_a_key_draws_seeds_and_places_that_nobody_else_can_tell(tmp_path):
+    asked = plan(split="hidden", tasks=["hvac_parched", "hvac_fan_max"], drives=["grid_june"], seeds=[0, 1])
+    first, again, other = (drawn(asked, key) for key in (b"a" * 16, b"a" * 16, b"b" * 16))
+    assert first == again
+    assert commitment(b"a" * 16, first) == commitment(b"a" * 16, again)
+    assert len({*commitment(b"a" * 16, first), *commitment(b"b" * 16, first), *commitment(b"b" * 16, other)}) == 5
+    seeds = [{trial.seed for trial in each.trials} for each in (first, other)]
+    assert [len(each) for each in seeds] == [2, 2]
+    assert not seeds[0] & seeds[1]
+    halves = {(name, half) for name in asked.tasks for half in CATALOGUE[name].halves}
+    assert {(trial.task, trial.half) for trial in first.trials if trial.task} == halves
+    assert [trial.drive for trial in first.trials if not trial.task] == ["grid_june", "grid_june"]
+    placed = [trial for trial in first.trials if trial.scenario]
+    assert all(CATALOGUE[trial.task].runs_whole_in(trial.scenario) for trial in placed)
+    assert len({drawn(asked, bytes([at]) * 16).trials[0].scenario for at in range(20)}) > 3
+    assert [job.id for job in make_plan(first.as_json()).jobs()] == [job.id for job in first.jobs()]
+    with pytest.raises(UserError, match="--split hidden"):
+        drawn(plan(tasks=["hvac_parched"]), b"a" * 16)
+    for size, fits in ((15, False), (16, True), (1024, True), (1025, False)):
+        (tmp_path / "key").write_bytes(b"x" * size + b"\n")
+        if fits:
+            assert read_key(tmp_path / "key") == b"x" * size
+        else:
+            with pytest.raises(UserError, match=f"{size} bytes"):
+                read_key(tmp_path / "key")
+
+
 def test_the_splits_share_out_the_episodes_between_them():
     chosen = {"tasks": ["hvac", "road"], "seeds": list(range(12))}
     whole, dev, test = (

@@ -129,13 +129,16 @@ def test_what_cannot_come_about_is_said_before_with_how_to_mend_it(
     )
     asked = make_plan({"agents": ["silent"], "trials": [as_json(trial_of(space.nominal))]})
     screen = due.DueScreen(space, asked, simulations, tmp_path)
-    (line,) = screen.check()
+    line, told = screen.check()
+    assert told == "driven without an agent: something comes due in 1 of 2 choices of drive and stage"
     assert line.startswith(
         "grid_june, tractor: nothing came due in 1 drive without an agent: it never came (1); nor with minutes 2.4"
     )
     assert screen.is_due(space.nominal)
     again = due.DueScreen(space, asked, simulations, tmp_path)
-    assert list(again.check()) == [line]
+    assert list(again.check()) == [line, told]
     assert again.tried == 0, "what was tried is kept"
+    with trying(space, asked, tmp_path, lambda job, folder: pytest.fail("nothing is run")):
+        pass  # the search itself goes on in that folder
     with pytest.raises(UserError, match="nothing comes due in this space"):
         list(due.DueScreen(none, asked, simulations, tmp_path).check())

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import threading
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from automotive_cosim.errors import CosimError
+from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, SlowDown
+from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.run.executor import tried
+from automotive_cosim.studies.adoption import adoption
 from automotive_cosim.studies.adoption.adoption import (
     AdoptionPlan,
     AdoptionRow,
     AdoptionStudy,
     Cohort,
+    ShareLog,
     ShareOutcome,
-    _Said,
     run_seed,
 )
 from automotive_cosim.studies.adoption.page import answer, charts, effects, gone, warnings
@@ -73,7 +76,7 @@ def test_herding_is_what_is_gone_of_the_first_gain() -> None:
 
 
 def test_warnings_of_one_kind_on_one_road_within_a_minute_are_of_one_hazard() -> None:
-    said = _Said(
+    said = ShareLog(
         warned=[("traffic", "a", 0.0), ("traffic", "a", 59.0), ("traffic", "b", 1.0), ("slippery", "a", 2.0)]
     )
     assert said.hazards == 3
@@ -159,3 +162,53 @@ def test_a_study_of_an_agent(agent: str, sumo: None, tmp_path: Path) -> None:
     else:
         assert full.warnings > half.warnings > 0
         assert full.failed == 0
+
+
+class Odd:
+    """An assistant of one's own that advises half of its cars and fails in three ways for others."""
+
+    def __init__(self, seed: int) -> None:
+        self.asked: dict[str, int] = {}
+        self.slow = threading.Event()
+
+    def advise(self, car: str, state: DrivingState, ways: Callable[[], Sequence[RouteOption]]) -> object:
+        self.asked[car] = self.asked.get(car, 0) + 1
+        match sum(map(ord, car)) % 6:
+            case 0:
+                raise ValueError("a fault of one car")
+            case 1:
+                return "left, I think"
+            case 2 if len(self.asked) < 20:
+                self.slow.wait(30)
+                return None
+            case 3:
+                return SlowDown(20.0)
+            case _:
+                return Reroute(edges=ways()[-1].edges)
+
+
+def test_an_assistants_errors_are_those_of_one_car(sumo: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(adoption, "HANGS_S", 0.05)
+    job = replace(PLAN, agent="never", seeds=(1,), minutes=1.0, every_s=20.0).jobs()[0]
+    with closing(adoption.warmed_up(job)) as warm:
+        odd = Odd(1)
+        said, trips = adoption.drive(job, warm, 1.0, odd)  # type: ignore[arg-type]
+        silent, before = adoption.drive(job, warm, 0.0)
+    kinds = {car: sum(map(ord, car)) % 6 for car in odd.asked}
+    late = [car for car in list(odd.asked)[:19] if kinds[car] == 2]
+    assert said.failed == sum(kind < 2 for kind in kinds.values()) + len(late) > len(late) > 0
+    assert all(odd.asked[car] == 1 for car, kind in kinds.items() if kind < 2)
+    assert max(odd.asked.values()) > 1
+    assert said.reroutes > 0 == silent.failed
+    assert trips.keys() == before.keys() > {car for car, kind in kinds.items() if kind < 2}
+    assert trips != before
+
+
+def test_a_class_of_ones_own_advises_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = "tests.studies.test_adoption:Odd"
+    replace(PLAN, agent=own).check()
+    assert isinstance(adoption.own_assistant(own, 1), Odd)
+    assert adoption.own_assistant("rule-perfect", 1) is None
+    monkeypatch.setattr(Odd, "__init__", lambda self: None)
+    with pytest.raises(UserError, match="Odd"):
+        replace(PLAN, agent=own).check()

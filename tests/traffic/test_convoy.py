@@ -118,3 +118,28 @@ def test_the_others_of_a_branch_do_what_they_do_beside_the_original(
         ride(first, second)
         ride(silent)
         assert others(silent)["ego"] != others(first)["ego"]
+
+
+def test_a_whole_fleet_falls_silent_on_a_branch_of_its_road(
+    first: RemoteTraffic, grid: Scenario, hurried: EgoPlan
+) -> None:
+    second = beside(first, replace(hurried, trip=grid.trip("round")))
+    silent, again = first.road.branch(), first.road.branch()
+    assert [car.car for car in silent] == ["ego", SECOND]
+
+    def ride(*cars: RemoteTraffic) -> None:
+        for _ in range(15):
+            for car in cars:
+                car.advance(1.0)
+
+    for cars in ((first, second), again):
+        assert all(car.request(SlowDown(15.0)).accepted for car in cars)
+        ride(*cars)
+    ride(*silent)
+    assert others(again[0]) == others(first)
+    assert [car.state for car in again] == [first.state, second.state]
+    assert all(others(silent[0])[car] != others(first)[car] for car in others(first).keys() & {SECOND})
+    assert silent[0].state.speed_mps > first.state.speed_mps
+    for cars in (silent, again):
+        for car in cars:
+            car.close()

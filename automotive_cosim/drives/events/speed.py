@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from automotive_cosim.cockpit.sensor_range import HORIZON_M
 from automotive_cosim.cockpit.signals import ADAS
-from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, Cruise, PullOver, SightKind, SlowDown
+from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, Cruise, LimitSource, PullOver, SightKind, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import DriveAct, EventKind, Measured, Sighting
 from automotive_cosim.drives.events.law import (
@@ -19,6 +19,7 @@ from automotive_cosim.drives.events.law import (
 )
 from automotive_cosim.drives.margins import hold_s, margin_kmh
 from automotive_cosim.geo.breaches import binding_limit
+from automotive_cosim.geo.weather import phenomena
 
 FOG_M = 1000.0
 """Sight below which there is fog (WMO No. 8)."""
@@ -74,7 +75,8 @@ class OverLimit(SpeedKind):
         limit, kmh = limit_here(now), speed_kmh(now)
         if limit is None or kmh < SLOW_KMH or is_school_time(now) or is_reduced(now.context, limit):
             return
-        yield from _over(kmh, limit.kmh, f"{kmh:.0f} km/h where {limit.kmh:.0f} apply")
+        why = f" {limit.text}" if limit.limit.source in (LimitSource.LAW, LimitSource.VARIABLE) else ""
+        yield from _over(kmh, limit.kmh, f"{kmh:.0f} km/h where {limit.kmh:.0f} apply{why}")
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """A limit, by whatever rule, that the car keeps."""
@@ -135,6 +137,8 @@ class LimitFalls(SpeedKind):
         if here is not None and following.kmh > here.kmh - 9.0:
             return
         words, subject = f"{following.kmh:.0f} km/h in {away_m:.0f} m at {kmh:.0f} km/h", f"{following.kmh:.0f}"
+        if following.source is LimitSource.VARIABLE:
+            words += ", by a variable sign"
         right_mps = following.mps + margin_kmh(following.kmh) / 3.6
         mps = now.driving.speed_mps
         if mps <= right_mps:
@@ -250,6 +254,7 @@ class WeatherSpeed(SpeedKind):
             return
         if limit is not None and is_reduced(context, limit):
             words = f"{kmh:.0f} km/h where {limit.kmh:.0f} apply {limit.text}"
+            words += ", as it snows" if "snow" in phenomena(now.weather) else ""
             over = [sighting for sighting in _over(kmh, limit.kmh, words) if not sighting.lookalike]
             if over:  # else one may still see too little to stop
                 yield from over

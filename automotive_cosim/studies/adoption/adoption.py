@@ -6,25 +6,28 @@ equipped car is driven by SUMO, as it would be anyway, until its assistant asks 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from datetime import timedelta
 from functools import partial
 from pathlib import Path
 from statistics import fmean
+from typing import Protocol, TypeVar
 
 import numpy as np
 
-from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
+from automotive_cosim.agents import Agent, AgentSettings, is_remote, make_agent, model_of
+from automotive_cosim.agents.guest import FAULTS, aside, own_class, told
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import ActionType, Json, Reroute
+from automotive_cosim.contracts import ActionType, DrivingState, Json, Reroute, RouteOption, SlowDown
 from automotive_cosim.cosim.simulation import couple
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.fleet import Fleet
 from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.specification import SCREEN, SessionSetup
-from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UserError
+from automotive_cosim.errors import ActionError, AgentError, CosimError, OutOfBudgetError, UserError
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import alone
 from automotive_cosim.run.row import JobRow, columns
@@ -40,11 +43,31 @@ from automotive_cosim.studies.reroute.policies import AGENT, Policy, PolicyRule,
 from automotive_cosim.studies.settings import AdoptionSettings
 from automotive_cosim.traffic.fork import Forked, RemoteRoad, RemoteTraffic
 from automotive_cosim.traffic.profiles import profile
+from automotive_cosim.traffic.wire import pack_state
 
 SAME_HAZARD_S = 60.0
 """Warnings of one kind on one road within this time are of the same hazard: our choice."""
-BY_NEWS = frozenset((PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.DELAY, PolicyRule.WORTHWHILE))
-"""Rules that need nothing but the news."""
+T = TypeVar("T")
+HANGS_S = 120.0
+"""Wall time after which a class of the user's is taken to hang, and its car drives on without it."""
+BY_NEWS = frozenset((PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.DELAY, PolicyRule.WORTHWHILE, PolicyRule.SUMO))
+"""Rules that need nothing but what a car can know."""
+
+
+class Assistant(Protocol):
+    """Advises all equipped cars; one is made for every share and seed, with the seed as its only argument."""
+
+    def advise(
+        self, car: str, state: DrivingState, ways: Callable[[], Sequence[RouteOption]]
+    ) -> Reroute | SlowDown | None:
+        """What to ask the driver of a car for, as it sets out and then every so often; None for nothing.
+
+        Args:
+            car: SUMO's id of it.
+            state: what it knows of itself and the road.
+            ways: gives its route, then others by the news, the quickest first.
+        """
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +84,7 @@ class AdoptionPlan(AdoptionSettings):
         profile(self.driver)
         rule = self.policy
         if rule.rule is PolicyRule.AGENT:
-            make_agent(*named(rule.agent))
+            _ = own_assistant(rule.agent, self.seeds[0]) or make_agent(*named(rule.agent))
         elif rule.rule not in BY_NEWS:
             raise UserError(f"--agent {self.agent} is no assistant: it knows what no car does; name another")
         for incident in self.scene().incidents[len(self.opened.incidents) :]:
@@ -146,7 +169,7 @@ class AdoptionRow(JobRow):
 
 
 @dataclass(slots=True)
-class _Said:
+class ShareLog:
     """What the assistants of a share have done."""
 
     reroutes: int = 0
@@ -166,15 +189,12 @@ class _Said:
 
 def run_seed(job: AdoptionJob, folder: Path) -> AdoptionRow:
     """Runs all shares of a seed; nothing but its row is kept."""
-    plan, scenario = job.plan, job.plan.scene()
-    with closing(Forked(scenario, job.seed, warming_up, allow_unprojected=True)) as warm:
-        warm.call(town.follow_town)
-        shares = dict.fromkeys((0.0, *(percent / 100 for percent in plan.shares)))
-        driven = {}
+    shares = dict.fromkeys((0.0, *(percent / 100 for percent in job.plan.shares)))
+    driven = {}
+    with closing(warmed_up(job)) as warm:
         for number, share in enumerate(shares):
             doing(f"driving with {share:.0%} equipped", share=number / len(shares))
-            with closing(warm.road()) as road:
-                driven[share] = (_Drive(job, scenario, road).go(share), road.call(town.trips_of))
+            driven[share] = drive(job, warm, share)
     before = driven[0.0][1]
     return replace(
         job.planned(),
@@ -182,69 +202,200 @@ def run_seed(job: AdoptionJob, folder: Path) -> AdoptionRow:
     )
 
 
+def warmed_up(job: AdoptionJob) -> Forked:
+    """The traffic of a seed at the end of its warm-up, to drive shares of; it has to be closed."""
+    warm = Forked(job.plan.scene(), job.seed, warming_up, allow_unprojected=True)
+    warm.call(town.follow_town)
+    return warm
+
+
+def drive(
+    job: AdoptionJob, warm: Forked, share: float, assistant: Assistant | None = None
+) -> tuple[ShareLog, Mapping[str, CarTrip]]:
+    """Drives a share: what its assistants did, and every car's trip by its id.
+
+    Args:
+        job: the plan and the seed.
+        warm: what ``warmed_up`` gave.
+        share: 0 to 1.
+        assistant: that of the plan if left out.
+    """
+    with closing(warm.road()) as road:
+        return _Drive(job, road, assistant).go(share), road.call(town.trips_of)
+
+
+def own_assistant(agent: str, seed: int) -> Assistant | None:
+    """An assistant of a class of the user's, ``package.module:Class``; None if it is an agent of drives.
+
+    Raises:
+        UserError: there is no such class, or it raised.
+    """
+    if ":" not in agent or is_remote(agent):
+        return None
+    made = own_class(agent, "agent")
+    if hasattr(made, "act") or not callable(getattr(made, "advise", None)):
+        return None
+    try:
+        with aside():
+            assistant: Assistant = made(seed)
+    except FAULTS as error:
+        raise UserError(f"agent {agent!r}: {made.__name__}(seed) raised {told(error)}") from error
+    return assistant
+
+
+def within(seconds: float, call: Callable[[], T]) -> T:
+    """The answer of an agent, which may be a class of the user's.
+
+    Raises:
+        UserError: it raised, or has not answered within this wall time; then it is left to itself.
+        CosimError: it raised that.
+    """
+    answers: list[T] = []
+    errors: list[BaseException] = []
+
+    def answer() -> None:
+        try:
+            answers.append(call())
+        except FAULTS as error:
+            errors.append(error)
+
+    thread = threading.Thread(target=answer, daemon=True)
+    thread.start()
+    thread.join(seconds)
+    if errors:
+        raise errors[0] if isinstance(errors[0], CosimError) else UserError(told(errors[0]))
+    if not answers:
+        raise UserError(f"it has not answered within {seconds:g} s")
+    return answers[0]
+
+
 class _Drive:
     """One share: its equipped cars, each with an assistant."""
 
-    def __init__(self, job: AdoptionJob, scenario: Scenario, road: RemoteRoad) -> None:
-        self._job, self._plan, self._scenario, self._road = job, job.plan, scenario, road
+    def __init__(self, job: AdoptionJob, road: RemoteRoad, assistant: Assistant | None) -> None:
+        self._job, self._plan, self._scenario, self._road = job, job.plan, job.plan.scene(), road
         self._policy = job.plan.policy
-        self._said = _Said()
-        self._model = model_of(*named(self._policy.agent))
+        self._said = ShareLog()
+        self._end_s = 0.0
+        self._own = assistant or own_assistant(self._policy.agent, job.seed)
+        self._model = None if self._own else model_of(*named(self._policy.agent))
 
-    def go(self, share: float) -> _Said:
+    def go(self, share: float) -> ShareLog:
         """Drives for the plan's time; what the assistants did."""
         road, fleet = self._road, Fleet[None](self._road.step_s)
         road.call(town.equip, share, self._job.seed, self._plan.driver)
-        end_s = road.time_s + 60 * self._plan.minutes
-        while road.time_s < end_s - road.step_s / 2:
-            fleet.begin("", self._clock(), lambda: road.time_s)
+        self._end_s = road.time_s + 60 * self._plan.minutes
+        while road.time_s < self._end_s - road.step_s / 2:
             for car in road.entered():
-                assistant = self._agent(car) if self._policy.rule is PolicyRule.AGENT else self._rule(car)
-                fleet.begin(car.car, assistant, partial(_now_s, car))
+                if self._policy.rule is PolicyRule.AGENT and self._own is None:
+                    fleet.begin(car.car, self._agent(car), partial(_now_s, car))
+                else:
+                    fleet.begin(car.car, self._advised(car), lambda: road.time_s)
+            fleet.begin("", self._clock(1.0 if fleet.busy else self._end_s - road.time_s), lambda: road.time_s)
             while "" in fleet.busy:
                 for name in fleet.run():
                     if name and name not in fleet.busy:
                         road.leave(name)
         return self._said
 
-    def _clock(self) -> TakesTime[None]:
-        """A second of the road, whoever drives in it."""
-        until_s = self._road.time_s + 1.0
-        yield 1.0
-        self._road.reach(until_s)
+    def _clock(self, for_s: float) -> TakesTime[None]:
+        """So long of the road, whoever drives in it; until a car gets a cockpit if no other has one."""
+        until_s = self._road.time_s + for_s
+        yield for_s
+        if (left_s := until_s - self._road.time_s) > self._road.step_s / 2:
+            self._road.run(left_s)
 
-    def _rule(self, car: RemoteTraffic) -> TakesTime[None]:
-        """Advises by the news, every so often; the driver follows as his profile does."""
-        rng = np.random.default_rng((self._job.seed, *car.car.encode()))
+    def _advised(self, car: RemoteTraffic) -> TakesTime[None]:
+        """Advises every so often; the driver follows as his profile does.
+
+        Between two looks a car has no cockpit, as reading it at every step costs more than all the rest; once its
+        driver was asked to slow down, it keeps it.
+        """
+        name, road, every_s = car.car, self._road, self._plan.every_s
+        rng = np.random.default_rng((self._job.seed, *name.encode()))
         follows = profile(self._plan.driver).compliance
-        while car.state.end is None:
-            for _ in range(round(self._plan.every_s)):
-                yield 1.0
-                car.advance(1.0)
-            if car.state.end is not None or self._policy.rule is PolicyRule.NEVER:
-                continue
-            ways = car.alternatives()
-            stay, others = ways[:1], ways[1:]
-            if not others:
-                continue
-            quickest = min(others, key=lambda way: way.eta_s)
-            if self._policy.leaves(stay[0].eta_s, stay[0].delay_s, quickest.eta_s) and rng.random() < follows:
-                self._said.reroutes += car.request(Reroute(edges=quickest.edges)).accepted
+        is_due, is_steered = self._own is not None, False
+        while (self._own or self._policy.rule is not PolicyRule.NEVER) and car.state.end is None:
+            if not is_due and is_steered:
+                for _ in range(round(every_s)):
+                    yield 1.0
+                    car.advance(1.0)
+            elif not is_due:
+                road.leave(name)
+                if road.time_s + every_s >= self._end_s:
+                    return
+                is_there, state, wait_s = True, None, every_s
+                while is_there and state is None:
+                    until_s = road.time_s + wait_s
+                    yield wait_s
+                    while road.time_s < until_s - road.step_s / 2:  # it stops where another car sets out
+                        road.reach(until_s)
+                    is_there, state = road.call(town.woken, name, self._job.seed, self._plan.driver)
+                    wait_s = 1.0  # out of the junction
+                if state is None:
+                    return
+                car = road.take(name, pack_state(state))
+            is_due = False
+            if car.state.end is not None:
+                return
+            try:
+                request = self._advice(car)
+            except UserError:
+                self._said.failed += 1
+                return
+            if request is not None and rng.random() < follows:
+                is_done = car.request(request).accepted
+                self._said.reroutes += is_done and isinstance(request, Reroute)
+                is_steered = is_steered or isinstance(request, SlowDown)
+
+    def _advice(self, car: RemoteTraffic) -> Reroute | SlowDown | None:
+        """What a rule or the user's assistant asks for."""
+        if self._own is None and self._policy.rule is PolicyRule.SUMO:
+            edges = self._road.call(town.way_of_device, car.car)
+            return Reroute(edges=edges) if edges else None
+        if (own := self._own) is not None:
+            late = threading.Event()
+
+            def ways() -> Sequence[RouteOption]:
+                if late.is_set():
+                    raise UserError("its car has gone on without it")
+                return car.alternatives()
+
+            try:
+                with aside():
+                    request = within(HANGS_S, lambda: own.advise(car.car, car.state, ways))
+            finally:
+                late.set()
+            if request is None or isinstance(request, Reroute):
+                return request
+            if isinstance(request, SlowDown) and isinstance(request.speed_kmh, int | float):
+                return request
+            raise UserError(f"advise returned {request!r}; it has to return a Reroute, a SlowDown or None")
+        known = car.alternatives()
+        if len(known) < 2:
+            return None
+        stay, quickest = known[0], min(known[1:], key=lambda way: way.eta_s)
+        leaves = self._policy.leaves(stay.eta_s, stay.delay_s, quickest.eta_s)
+        return Reroute(edges=quickest.edges) if leaves else None
 
     def _agent(self, car: RemoteTraffic) -> TakesTime[None]:
         """Lets an agent act in the cockpit of a car until the drive ends or the agent fails."""
         settings = AgentSettings(seed=self._job.seed)
-        agent = make_agent(*named(self._policy.agent), settings, self._model)
-        session = self._session(car, agent)
-        agent.reset(session.goal)
+        try:
+            agent = within(HANGS_S, lambda: make_agent(*named(self._policy.agent), settings, self._model))
+            session = self._session(car, agent)
+            within(HANGS_S, lambda: agent.reset(session.goal))
+        except UserError:
+            self._said.failed += 1
+            return
         before = car.state.ahead.route_edges
         while session.end is None:
             try:
-                action = agent.act(session.observation)
+                action = within(HANGS_S, lambda: agent.act(session.observation))
             except ActionError as error:
                 yield from session.refusing(str(error))
                 continue
-            except (AgentError, OutOfBudgetError):
+            except (AgentError, OutOfBudgetError, UserError):
                 self._said.failed += 1
                 return
             if action.action_type is ActionType.SHOW_ALERT:
@@ -275,7 +426,7 @@ def _now_s(car: RemoteTraffic) -> float:
 
 
 def _outcome(
-    job: AdoptionJob, share: float, said: _Said, trips: Mapping[str, CarTrip], before: Mapping[str, CarTrip]
+    job: AdoptionJob, share: float, said: ShareLog, trips: Mapping[str, CarTrip], before: Mapping[str, CarTrip]
 ) -> ShareOutcome:
     both = sorted(trips.keys() & before.keys())
     equipped = [car for car in both if town.drawn(job.seed, car) < share]

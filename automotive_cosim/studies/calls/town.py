@@ -9,6 +9,7 @@ from zlib import crc32
 
 import numpy as np
 
+from automotive_cosim.contracts import DrivingState
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan
@@ -50,7 +51,7 @@ class Town:
         """Begins now; ``side`` are the edges of side streets."""
         self._sumo, self._step_s, self._side = sumo, step_s, side
         self.trips: dict[str, CarTrip] = {}
-        self._driving: dict[str, float] = {}
+        self.driving: dict[str, float] = {}
         """Who is on the road, and the gap that each keeps when standing."""
 
     def after_step(self) -> None:
@@ -59,11 +60,11 @@ class Town:
         for car in sumo.departed() if sumo.departed_count() else ():
             if sumo.vehicle_class(car) == "passenger":
                 self.trips[car] = CarTrip(now_s - sumo.vehicle.getDepartDelay(car), now_s)
-                self._driving[car] = sumo.min_gap(car)
+                self.driving[car] = sumo.min_gap(car)
         for car in sumo.arrived() if sumo.arrived_count() else ():
-            if self._driving.pop(car, None) is not None:
+            if self.driving.pop(car, None) is not None:
                 self.trips[car] = replace(self.trips[car], until_s=now_s, has_left=True)
-        for car, min_gap_m in self._driving.items():
+        for car, min_gap_m in self.driving.items():
             self.trips[car] = self._after(self.trips[car], car, min_gap_m, now_s)
 
     def _after(self, trip: CarTrip, car: str, min_gap_m: float, now_s: float) -> CarTrip:
@@ -115,9 +116,34 @@ def drawn(seed: int, car: str) -> float:
     return float(np.random.default_rng((seed, crc32(car.encode()))).random())
 
 
+def woken(running: Running, car: str, seed: int, driver: str) -> tuple[bool, DrivingState | None]:
+    """Puts a cockpit into a car that had none for a while: whether the car is still in the traffic, and its state;
+    None in a junction, where nothing can be asked for."""
+    is_there = car in running.watcher(Town).driving
+    if not is_there or running.sumo.edge_of(car) not in running.world.network.edges:
+        return is_there, None
+    return True, running.convoy.equip(car, EgoPlan(NOWHERE, driver, seed ^ crc32(car.encode()))).state
+
+
 def trips_of(running: Running) -> Mapping[str, CarTrip]:
     """What every car has come to."""
     return running.watcher(Town).trips
+
+
+def way_of_device(running: Running, car: str) -> tuple[str, ...]:
+    """The edges on which SUMO's rerouting device would send a car now; empty if it keeps its own or is in a
+    junction."""
+    sumo = running.sumo
+    if sumo.edge_of(car).startswith(":"):
+        return ()
+    own = sumo.vehicle.getRoute(car)[sumo.vehicle.getRouteIndex(car) :]
+    try:
+        sumo.reroute(car)
+    except sumo.refusals:
+        return ()
+    way = sumo.vehicle.getRoute(car)[sumo.vehicle.getRouteIndex(car) :]
+    sumo.set_route(car, own)
+    return () if way == own else tuple(way)
 
 
 def _plan(share: float, seed: int, driver: str, car: str) -> EgoPlan | None:

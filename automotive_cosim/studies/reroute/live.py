@@ -14,7 +14,7 @@ from datetime import timedelta
 from io import FileIO
 from pathlib import Path
 
-from automotive_cosim.contracts import Json, LimitSource
+from automotive_cosim.contracts import Json
 from automotive_cosim.formats.layout import LIVE, ROAD, STEPS, WATCHED
 from automotive_cosim.formats.writing import add_line, growing, is_being_written, make_folder, remove
 from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter
@@ -145,7 +145,7 @@ class LiveDrive:
         if self._road is not None and state.end is None:
             limit = state.road.limit
             clock = scenario.start + timedelta(seconds=state.time_s - scenario.sumo.warm_up_s)
-            posted = limit_kmh(limit) if limit.source is LimitSource.POSTED else None
+            posted = limit_kmh(limit) if limit.is_posted else None
             self._road.second(state, RoadFacts(posted, clock), self._traffic.look())
 
     def _tell(self, words: str, thought: str = "", stages: Sequence[Json] = ()) -> None:

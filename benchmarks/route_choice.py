@@ -1,0 +1,168 @@
+"""The two-route network of RouteRL and URB, beside RouteRL itself: the same game, its figures, and time for a day.
+
+    python benchmarks/route_choice.py runs/route_choice --cars 22 --days 10
+
+The network is drawn anew from what RouteRL publishes of it (E0 leads to a straight way and a way round, where the
+straight one gives way at their end; everywhere 13.89 m/s); RouteRL runs with its own, in an environment that this
+makes with pip. Departures are those that RouteRL draws. Each car chooses one of two ways as it sets out: all the
+first, all the second, or by turns. RouteRL's times are two seconds longer than SUMO's (`findings/`).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+import venv
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from statistics import fmean
+
+from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
+from automotive_cosim.studies.adoption.adoption import AdoptionPlan, drive, warmed_up
+from automotive_cosim.traffic import sumo_programs
+
+PACKAGES = ("routerl==2.0.0", "eclipse-sumo==1.28.0", "libsumo==1.28.0")
+LONGER_S = 2.0
+"""What RouteRL adds to SUMO's duration and departure delay."""
+WARM_UP_S = 10
+"""Ours warms up, so its departures are that much later."""
+FIRST, SECOND = ("E0", "E1", "E7", "E2"), ("E0", "E3", "E4", "E5", "E2")
+NODES: dict[str, tuple[float, float]] = {
+    "J0": (0, 100),
+    "J1": (100, 100),
+    "J6": (173.97, 100),
+    "J2": (200, 100),
+    "J3": (300, 100),
+}
+NODES |= {"J6": (173.97, 100), "J2": (200, 100), "J3": (300, 100)}
+EDGES = {"E0": "J0 J1", "E1": "J1 J6", "E7": "J6 J2", "E2": "J2 J3", "E3": "J1 J4", "E4": "J4 J5", "E5": "J5 J2"}
+CHOICES: Mapping[str, Callable[[int], int]] = {
+    "all the first": lambda number: 0,
+    "all the second": lambda number: 1,
+    "by turns": lambda number: number % 2,
+}
+THEIRS = """
+import json, sys, time
+import numpy as np
+from routerl import TrafficEnvironment
+cars, days, libsumo = map(int, sys.argv[1:])
+env = TrafficEnvironment(
+    seed=42,
+    agent_parameters={"num_agents": cars, "new_machines_after_mutation": cars,
+                      "machine_parameters": {"observation_type": "previous_agents_plus_start_time"}},
+    simulator_parameters={"network_name": "two_route_yield", "simulation_timesteps": 180,
+                          "use_libsumo": libsumo == 1},
+    path_generation_parameters={"number_of_paths": 2, "visualize_paths": False},
+    plotter_parameters={"plot_choices": "none"},
+)
+env.start()
+env.mutation(mutation_start_percentile=-1)
+env.reset()
+starts = {str(agent.id): agent.start_time for agent in env.all_agents}
+order = sorted(starts, key=lambda car: (starts[car], int(car)))
+found = {}
+for number, choose in enumerate((lambda n: 0, lambda n: 1, lambda n: n % 2)):
+    begun, means = time.perf_counter(), []
+    for _ in range(days):
+        for agent in env.agent_iter():
+            env.step(None if any(env.last()[2:4]) else choose(order.index(agent)))
+        means.append(60 * float(np.mean([each["travel_time"] for each in env.last_episode_travel_times])))
+        env.reset()
+    found[number] = np.mean(means), (time.perf_counter() - begun) / days
+env.stop_simulation()
+json.dump({"starts": [starts[car] for car in order], "found": list(found.values())}, open("theirs.json", "w"))
+"""
+
+
+class Chooser:
+    """Sends cars along the ways of a rule."""
+
+    def __init__(self, choose: Callable[[int], int]) -> None:
+        """Takes the rule: from a car's number in the order of departures to its way."""
+        self._choose = choose
+
+    def advise(self, car: str, state: DrivingState, ways: Callable[[], Sequence[RouteOption]]) -> Reroute | None:
+        """See ``adoption.Assistant``."""
+        return Reroute(edges=SECOND) if self._choose(int(car)) else None
+
+
+def ours(folder: Path, starts: Sequence[int], days: int) -> list[tuple[float, float]]:
+    """Mean travel time and wall time a day, in seconds, for each rule."""
+    nodes = "".join(f'<node id="{name}" x="{x}" y="{y}"/>' for name, (x, y) in NODES.items())
+    form = '<edge id="{}" from="{}" to="{}" speed="13.89" priority="-1"/>'
+    edges = "".join(form.format(name, *ends.split()) for name, ends in EDGES.items())
+    form = (
+        '<vehicle id="{}" depart="{}" type="AV" route="first" departSpeed="0" departLane="first"/>'  # as TraCI adds
+    )
+    cars = "".join(form.format(number, start_s + WARM_UP_S) for number, start_s in enumerate(starts))
+    (folder / "two.nod.xml").write_text(f"<nodes>{nodes}</nodes>")
+    (folder / "two.edg.xml").write_text(f"<edges>{edges}</edges>")
+    (folder / "two.rou.xml").write_text(
+        f'<routes><vType id="AV"/><route id="first" edges="{" ".join(FIRST)}"/>{cars}</routes>'
+    )
+    (folder / "two.sumocfg").write_text(
+        '<configuration><input><net-file value="two.net.xml"/><route-files value="two.rou.xml"/></input>'
+        "</configuration>"
+    )
+    made = ["-n", "two.nod.xml", "-e", "two.edg.xml", "-o", "two.net.xml", "--no-turnarounds", "true"]
+    made += ["--junctions.limit-turn-speed", "5.5"]
+    is_made, printed = sumo_programs.run("netconvert", made, folder)
+    if not is_made:
+        sys.exit(printed)
+    minutes = (max(starts) + 120) / 60
+    plan = AdoptionPlan(
+        str(folder / "two.sumocfg"),
+        seeds=(42,),
+        agent="never",
+        warm_up_s=WARM_UP_S,
+        minutes=minutes,
+        every_s=3_600.0,
+    )
+    (job,) = plan.jobs()
+    found = []
+    with closing(warmed_up(job)) as warm:
+        for choose in CHOICES.values():
+            begun_s, means = time.perf_counter(), []
+            for _ in range(days):
+                trips = drive(job, warm, 1.0, Chooser(choose))[1].values()
+                means.append(fmean(trip.until_s - trip.planned_s for trip in trips))
+            found.append((fmean(means), (time.perf_counter() - begun_s) / days))
+    return found
+
+
+def main() -> None:
+    """Runs both and prints a table of Markdown."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--cars", type=int, default=22, help="cars a day")
+    parser.add_argument("--days", type=int, default=10, help="days of each rule")
+    parser.add_argument("--libsumo", action="store_true", help="RouteRL over libsumo instead of TraCI")
+    told = parser.parse_args()
+    folder = told.folder.resolve()
+    home = folder / "routerl"
+    if not home.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        venv.create(home, with_pip=True)
+        subprocess.run([home / "bin/pip", "install", "-q", *PACKAGES], check=True)
+    sumo = next(home.glob("lib/*/site-packages/sumo"))
+    around = os.environ | {"SUMO_HOME": str(sumo), "PATH": f"{sumo / 'bin'}:{os.environ['PATH']}"}
+    command = [home / "bin/python", "-c", THEIRS, str(told.cars), str(told.days), str(int(told.libsumo))]
+    subprocess.run(command, cwd=folder, env=around, check=True, stdout=subprocess.DEVNULL)
+    theirs = json.loads((folder / "theirs.json").read_text())
+    mine = ours(folder, theirs["starts"], told.days)
+    print("| cars choose | RouteRL, s | ours, s | RouteRL, s a day | ours, s a day | ratio |")
+    print("|---|--:|--:|--:|--:|--:|")
+    for name, (their_s, their_day_s), (own_s, own_day_s) in zip(CHOICES, theirs["found"], mine, strict=True):
+        print(
+            f"| {name} | {their_s - LONGER_S:.1f} | {own_s:.1f} | {their_day_s:.3f} | {own_day_s:.3f} | "
+            f"{own_day_s / their_day_s:.2f} |"
+        )
+
+
+if __name__ == "__main__":
+    main()
