@@ -33,8 +33,8 @@ from automotive_cosim.measures.following import is_near
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.traffic.fork import Simulations
 
-FAMILIES = ("grid_june", "autobahn_july", "london_july", "paris_july", "peripherique_june")
-SEEDS = 10
+FAMILIES = ("grid_june", "grid_january")
+SEEDS = 25
 MINUTES = 3.0
 FOLLOWS_S = 3.0
 """A car that is nearer to the one ahead follows it."""

@@ -106,7 +106,7 @@ def regrade(
     """Judge the stored runs again by the current checks and print what changes; nothing is written."""
     from automotive_cosim.publish.archive import unpacked
 
-    with nullcontext(path) if path.is_dir() else unpacked(path) as folder:
+    with unpacked(path) if path.is_file() else nullcontext(path) as folder:
         _regrade(folder, as_json)
 
 

@@ -151,7 +151,7 @@ class _Read:
     problems: tuple[Problem, ...]
 
 
-def _read(folder: Path, bundle: Path | None, key: bytes | None) -> _Read:
+def _read(folder: Path, bundle: Path | None, key: bytes | None = None) -> _Read:
     contents = None if bundle is None else read_contents(folder)
     problems = [] if contents is None else hash_problems(folder, contents)
     problems += [] if bundle is None else _archive_problems(folder, bundle)
