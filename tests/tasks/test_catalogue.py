@@ -173,7 +173,8 @@ def test_no_text_belongs_to_two_tasks():
 def test_triggers_ask_many_things():
     def asked(condition: object) -> set[str]:
         parts = getattr(condition, "conditions", ()) or tuple(filter(None, [getattr(condition, "condition", None)]))
-        return set().union({type(condition).__name__}, *map(asked, parts))
+        parts += tuple(each for each in getattr(condition, "values", ()) if callable(each))
+        return set().union({getattr(condition, "name", type(condition).__name__)}, *map(asked, parts))
 
     kinds = set().union(*(asked(half.trigger.condition) for task in TASKS for half in halves(task)))
     assert len(kinds - {"All", "Not"}) >= 25
@@ -182,7 +183,9 @@ def test_triggers_ask_many_things():
 def test_goals_ask_many_things():
     def kinds(check: object) -> frozenset[str]:
         parts = getattr(check, "checks", ())
-        return frozenset().union(*map(kinds, parts)) if parts else frozenset({type(check).__name__})
+        if parts:
+            return frozenset().union(*map(kinds, parts))
+        return frozenset({getattr(check, "name", type(check).__name__)})
 
     pairs = set()
     for task in TASKS:
