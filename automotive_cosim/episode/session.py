@@ -46,7 +46,7 @@ from automotive_cosim.interface import trace
 from automotive_cosim.interface.controls import Shown, shown
 from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
-from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, TOLD_HEARD, asks_again, spoken_s
+from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, TOLD_HEARD, asks_again, spoken_s, understood
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
 from automotive_cosim.voice.cabin import driver_snr_db, is_understood, level_db
 from automotive_cosim.voice.table import SPOKEN, came_from, heard, sounding
@@ -215,8 +215,7 @@ class Session:
     @property
     def said(self) -> tuple[str, ...]:
         """Every answer of the agent to the driver that he understood."""
-        actions = (step.action for step in self.steps if PARDON not in step.said)
-        return tuple(each.text or "" for each in actions if each and each.action_type is ActionType.ANSWER)
+        return tuple(text for step in self.steps for text in understood(step))
 
     @property
     def breaches(self) -> tuple[Breach, ...]:

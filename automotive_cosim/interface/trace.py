@@ -22,6 +22,8 @@ STATES = ("traffic", "signals", "elements")
 HASHED = (*STATES, "action")
 SAID = "said"
 """Also in the hash, of a step in which the driver said something."""
+SELDOM = (SAID, "awareness", "heard", "cabin_db")
+"""Fields of a step that it has only where there is something to say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +71,8 @@ class Step:
             "events": [plain(event) for event in moment.events],
         } | {
             name: value
-            for name, value in (
-                (SAID, list(self.said)),
-                ("awareness", moment.awareness),
-                ("heard", list(self.heard or ())),
-                ("cabin_db", self.cabin_db),
+            for name, value in zip(
+                SELDOM, (list(self.said), moment.awareness, list(self.heard or ()), self.cabin_db), strict=True
             )
             if value not in ([], None)
         }

@@ -9,12 +9,13 @@ from pathlib import Path
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
+from automotive_cosim.contracts.given import Hearing
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import opened
-from automotive_cosim.interface.trace import SAID, Step, element, plain, sha256
+from automotive_cosim.interface.trace import SAID, SELDOM, Step, element, plain, sha256
 from automotive_cosim.measures.following import nearest_s
 from automotive_cosim.publish.drives import PLANNED as DRIVE_PLANNED
 from automotive_cosim.publish.drives import UNJUDGED as DRIVE_UNJUDGED
@@ -32,8 +33,9 @@ from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import shipped
-from automotive_cosim.tasking.dialogue import dialogue, questions
+from automotive_cosim.tasking.dialogue import PARDON, dialogue, questions
 from automotive_cosim.tasking.instance import Instance, phrased
+from automotive_cosim.voice.cabin import level_db
 
 STEP_BYTES, SPARE_STEPS = 2**20, 4
 """Bytes that a step may have in a trace, on average: a full screen has 40 kB, a question to a model 100 kB."""
@@ -47,18 +49,19 @@ PLANNED = (
 """Fields of a row that the plan and the catalogue determine."""
 FROM_MOMENTS = (
     "local_time", "traffic", "signals", "weather", "gps", "connectivity", "context", "events",
+    "awareness", "cabin_db",
 )  # fmt: skip
 """Fields of a step that follow from the stored moments."""
 STEP = frozenset(
     {"step", "time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s", "thought", "stages"}
-)
+) - {*SELDOM}
 UNJUDGED = ("success", "reward", "parts", "goal_s", "reason_fits")
 """Fields of a row that an episode without a verdict leaves at their defaults."""
 BY_REPLAY = frozenset(
     {
         f"{ROWS} speed_compliance", f"{ROWS} min_time_to_collision_s", f"{ROWS} measures", f"{ROWS} exposure",
         "result path", "result timeline", "result violations", "result estimates", "result notes",
-        "step feedback",
+        "step feedback", "step said", "step heard",
     }
 )  # fmt: skip
 """Fields that only a replay can check."""
@@ -149,7 +152,7 @@ def _judged_problems(folder: Path, job: EpisodeSetup, row: EpisodeRow, told: Jso
     file, result = trace_file(folder, row.id).relative_to(folder).as_posix(), dict(last["result"])
     if "untouched_drive" in result:  # its name in older traces
         result["baseline_drive"] = result.pop("untouched_drive")
-    yield from _step_problems(file, steps, judged)
+    yield from _step_problems(file, steps, judged, job.conditions.hear)
     source = judged_file(folder, row.id).relative_to(folder).as_posix()
     verdict = judged_again(row, judged)
     start, end = judged.trace[0], judged.trace[-1]
@@ -193,18 +196,19 @@ def _judged_problems(folder: Path, job: EpisodeSetup, row: EpisodeRow, told: Jso
     yield from _phrasing_problems(source, job, row, judged)
 
 
-def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator[Problem]:
+def _step_problems(file: str, steps: Sequence[Json], judged: Judged, hear: Hearing) -> Iterator[Problem]:
     """Problems of the steps, compared with their moments."""
     moments = {moment.time_s: moment for moment in judged.trace}
     for number, step in enumerate(steps):
-        if step.keys() - {SAID} != STEP or step["step"] != number:
+        if step.keys() - {*SELDOM} != STEP or step["step"] != number:
             yield Problem(file, f"step {number}", "is missing, or has other fields")
             return
         moment = moments.get(step["time_s"])
         if moment is None:
             yield Problem(file, f"step {number} time_s", "matches no stored moment")
             continue
-        expected = Step(number, moment, (), None, Feedback(FeedbackCode.NONE, "")).as_json()
+        cabin_db = level_db(moment) if hear.is_by_ear else None
+        expected = Step(number, moment, (), None, Feedback(FeedbackCode.NONE, ""), cabin_db=cabin_db).as_json()
         yield from differences(file, f"step {number}", step, expected, FROM_MOMENTS, "its stored moment")
     if [step["time_s"] for step in steps] != sorted(step["time_s"] for step in steps):
         yield Problem(file, "time_s", "the steps are not in order")
@@ -219,8 +223,13 @@ def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator
 
 
 def _answers(step: Json) -> Iterator[str]:
+    """What the agent said in a step, if the driver understood it."""
     action = step["action"]
-    if isinstance(action, dict) and action.get("action_type") == ActionType.ANSWER:
+    if (
+        PARDON not in step.get(SAID, ())
+        and isinstance(action, dict)
+        and action.get("action_type") == ActionType.ANSWER
+    ):
         yield str(action.get("text"))
 
 

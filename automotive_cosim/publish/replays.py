@@ -39,7 +39,7 @@ RESULT = (
     "baseline_drive",
 )
 """Fields of the result at the end of a trace that the actions determine."""
-STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s")
+STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s", SAID, "heard")
 
 
 def replay(folder: Path, job: TrialSetup, row: TrialRow, simulations: Simulations) -> tuple[Problem, ...]:
@@ -82,8 +82,7 @@ def _differences(
         if len(steps) != len(new_steps):
             yield Problem(file, "", f"has {len(steps)} steps, but {len(new_steps)} when replayed")
         for number, (step, new) in enumerate(zip(steps, new_steps, strict=False)):
-            told, now = ({SAID: []} | each for each in (step, new))
-            yield from differences(file, f"step {number}", told, now, (*STEP, SAID), "its replay")
+            yield from differences(file, f"step {number}", step, new, STEP, "its replay")
     yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
     names = [name for name in steady(row) if name not in OF_THE_AGENT]
     yield from differences(ROWS, row.id, as_json(row), as_json(new_row), names, "its replay")

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from operator import attrgetter
 from statistics import median
 
-from automotive_cosim.contracts import ActionType
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events import KINDS, DriveAct
 from automotive_cosim.drives.harm import harm
@@ -18,6 +17,7 @@ from automotive_cosim.episode.episode import Episode, counterfactual
 from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.run.figures import drive_figures
 from automotive_cosim.run.forks import ForkedAct, Forks, TrialFork
+from automotive_cosim.tasking.dialogue import understood
 from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasking.verdict import judge as judge_task
 
@@ -208,8 +208,7 @@ def _parts(forks: Forks, moments: Sequence[Moment], without: frozenset[int]) -> 
     trace = before + [moment for moment in moments if moment.time_s <= end_s]
     gone = forks.commands(without)
     given = [record for record in episode.world.cockpit.given if id(record) not in gone]
-    kept = [step.action for step in episode.steps if step.action is not None and step.number not in without]
-    said = [action.text or "" for action in kept if action.action_type is ActionType.ANSWER]
+    said = [text for step in episode.steps if step.number not in without for text in understood(step)]
     found = judge_task(
         episode.instance,
         trace,

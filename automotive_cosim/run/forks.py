@@ -37,6 +37,7 @@ from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.rerun import Player, Recorded, compare, played
+from automotive_cosim.tasking.dialogue import PARDON
 from automotive_cosim.traffic.chance import SEED_RANGE
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.running import fingerprint
@@ -164,7 +165,7 @@ class Forks(TrialObserver):
         asked, self._asked = self._all_asked[self._asked :], len(self._all_asked)
         action, step = shot.step.action, shot.step
         at_s = new[0].time_s if new else self.session.steps[-2].moment.time_s + step.thought_s
-        said = None if action is None else spoken(action, at_s)
+        said = None if action is None or PARDON in step.said else spoken(action, at_s)
         acts = [*acts_of(new, step.moment.driving), *([] if said is None else [said])]
         if acts and len(self.acts) == MOST_ACTS:
             self.more += 1

@@ -14,7 +14,9 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from automotive_cosim.contracts import ActionType
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.interface.trace import Step
 from automotive_cosim.tasking.triggers import TriggerCondition
 
 NEUTRAL = "You know as much as I do. Do as you think best."
@@ -156,6 +158,13 @@ def topic_of(question: str, topics: Sequence[Topic]) -> Topic | None:
 def asks_again(question: str) -> bool:
     """Whether the driver is asked to repeat what he has said, in English."""
     return _AGAIN.search(question.casefold().replace("’", "'")) is not None
+
+
+def understood(step: Step) -> tuple[str, ...]:
+    """What the agent told the driver in a step; nothing if he did not understand it."""
+    action = step.action
+    is_told = action is not None and action.action_type is ActionType.ANSWER and PARDON not in step.said
+    return (action.text or "",) if action is not None and is_told else ()
 
 
 def questions(start: Moment, now: Moment) -> list[dict[str, Any]]:

@@ -14,8 +14,10 @@ from typing import Any
 
 import pytest
 
+from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.interface.trace import Step
 from automotive_cosim.publish import archive, episodes
 from automotive_cosim.publish.contents import NAME, read_contents
 from automotive_cosim.publish.episodes import BY_REPLAY, ON_TRUST, check_trial
@@ -27,10 +29,15 @@ from automotive_cosim.run.moments import Judged, read_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import from_line
-from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, write_trace
+from automotive_cosim.run.settings import Pictures
+from automotive_cosim.run.store import opened, read_evaluation, read_rows, read_trace, write_trace
+from automotive_cosim.run.worker import run_job
 from automotive_cosim.tasking.binding import bound
+from automotive_cosim.tasking.dialogue import PARDON, understood
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
+
+from .conftest import TASKS
 
 OTHERS = {
     "half": "second", "dimension": "explicit_control", "module": "media", "basis": "wish", "geo": "none",
@@ -323,6 +330,25 @@ def test_a_verdict_that_was_turned_everywhere_is_found_and_named(unpacked, tmp_p
     assert any(f"{ROWS}, {row.id} success: is true, but false by" in problem for problem in told)
 
 
+def test_what_a_trial_has_only_under_some_conditions_is_checked_and_replayed_too(
+    tmp_path, simulations, fork_server
+):
+    under = {"make": ["drawn"], "hear": ["cabin"], "attention": ["on"]}
+    plan = make_plan({"agents": ["oracle"], "tasks": TASKS[:1], "scenarios": ["grid"], **under})
+    job = next(job for job in plan.jobs() if job.half == "first")
+    with opened(tmp_path / "e", plan.as_json(), EpisodeRow, planned=1) as store:
+        store.append(row := run_job(job, tmp_path / "e", Pictures.NONE, simulations, fork_server))
+    lines = read_trace(tmp_path / "e", row.id)
+    assert row.success
+    assert {"awareness", "heard", "cabin_db"} <= lines[0].keys()
+    assert not check_trial(tmp_path / "e", job, row)
+    assert not list(replay(tmp_path / "e", job, row, simulations))
+    for name in ("awareness", "cabin_db", "heard"):
+        write_trace(tmp_path / "e", row.id, changed(lines, (0, name) if name != "heard" else (0, name, 0)))
+        found = [*check_trial(tmp_path / "e", job, row), *replay(tmp_path / "e", job, row, simulations)]
+        assert any(f"step 0 {name}" in problem.field for problem in found), name
+
+
 def test_a_replay_finds_what_nothing_else_can(ran, simulations):
     row = judged(ran)
     job = job_of(ran, row)
@@ -332,6 +358,14 @@ def test_a_replay_finds_what_nothing_else_can(ran, simulations):
     assert not check_trial(ran, job, forged)
     (problem,) = replay(ran, job, forged, simulations)
     assert problem.field == f"{row.id} speed_compliance"
+
+
+def test_an_answer_that_the_driver_did_not_understand_is_none(ran):
+    row = judged(ran)
+    start, action = read_judged(ran, row.id, Judged).trace[0], Action(ActionType.ANSWER, text="At 20 degrees.")
+    for said, told in (((), ("At 20 degrees.",)), ((PARDON,), ())):
+        step = Step(1, start, (), action, Feedback(FeedbackCode.OK, ""), said=said)
+        assert understood(step) == tuple(episodes._answers(step.as_json())) == told
 
 
 @pytest.mark.slow
