@@ -27,9 +27,9 @@ from automotive_cosim.contracts.text import Text
 
 W = TypeVar("W", bound=Widget)
 LINE_HEIGHT, LINE_GAP, INSET = 84, 8, (12, 8)
-NARROW_ROOM, WIDE_ROOM, TWO_COLUMNS, MOST_CHOICES = 392, 640, 1100, 4
-"""Width of a control beside its name; lines stand in two columns on screens wider than that, unless one has more
-choices."""
+NARROW_ROOM, WIDE_ROOM, STEP_ROOM, TWO_COLUMNS, MOST_CHOICES = 392, 640, 64, 1100, 4
+"""Widths of a control beside its name, and of a button that steps; lines stand in two columns on screens wider
+than that, unless one has more choices."""
 
 
 def page_of(state: State) -> AppPage:
@@ -69,7 +69,7 @@ def _menu(screen: str, place: OwnScreen, state: State) -> tuple[Widget, ...]:
 def _shelves(screen: str, place: OwnScreen, state: State) -> tuple[Widget, ...]:
     """The controls that it shows."""
     every = [part for shelf in place.shelves for part in _parts(shelf, state)]
-    widest = max(sum(isinstance(each, Choice) for each in own) for own, _ in every)
+    widest = max((sum(isinstance(each, Choice) for each in own) for own, _ in every), default=0)
     both = content(state).width > TWO_COLUMNS and widest <= MOST_CHOICES
     columns, room = (2, NARROW_ROOM) if both else (1, WIDE_ROOM)
     listed = rows(
@@ -85,8 +85,9 @@ def _titled(screen: str, place: OwnScreen, state: State, body: BlockPart) -> tup
 
 
 def _parts(shelf: Shelf, state: State) -> Iterator[tuple[list[Widget], str]]:
-    """The widgets of each control, and its name."""
-    made = [widget for child in pages()[shelf.of].made(state) for widget in child.walk() if widget.key]
+    """The widgets of each control that is there now, and its name; pictures and lists stay at home."""
+    every = (widget for child in pages()[shelf.of].made(state) for widget in child.walk() if widget.key)
+    made = [widget for widget in every if widget.listens or isinstance(widget, Label)]
     for control in shelf.controls:
         own = [each for each in made if shown_by(shelf.controls, each.key) is control]
         if own:
@@ -102,10 +103,12 @@ def _line(own: list[Widget], name: str, room: int) -> Block:
     touched = sorted((each for each in own if each.listens), key=lambda each: each.rect.x)
     if touched and all(isinstance(each, Choice) for each in touched):
         control = framed(grid(len(touched), 4, *touched), (4, 4), look="raised")
-    elif labels:
+    elif labels and (STEP_ROOM + 4) * len(touched) < room - STEP_ROOM:
         first, *others = touched
         control = line(
-            (64, first), replace(labels[0], style=Type.STRONG, align="centre"), *((64, each) for each in others)
+            (STEP_ROOM, first),
+            replace(labels[0], style=Type.STRONG, align="centre"),
+            *((STEP_ROOM, each) for each in others),
         )
         name = name or labels[0].description
     else:

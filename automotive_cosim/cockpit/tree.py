@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.settings.screens import PAGES
 from automotive_cosim.cockpit.apps.vehicle.screens import TABS
 from automotive_cosim.cockpit.language import messages
-from automotive_cosim.cockpit.make import HOME, Make, ShelfItem, glyphs
+from automotive_cosim.cockpit.make import HOME, LANGUAGES, Make, ShelfItem, glyphs
 from automotive_cosim.cockpit.registry import apps, apps_in, docked, pages
 from automotive_cosim.cockpit.theme import Icon, Palette
 from automotive_cosim.contracts.given import CarMake
@@ -174,8 +174,28 @@ def check(document: Document) -> None:
             raise wrong(("screens", name), "needs either holds, of screens, or shelves, of controls")
         if name not in pages() and holder(make, name) == LAUNCHER:
             raise wrong(("screens", name), "is in no menu and not in the bar; put it into one")
+        if not re.fullmatch("[a-z][a-z0-9_]*", name):
+            raise wrong(("screens", name), "is no name of a screen; give small letters, digits and underscores")
+        if name in _above(make, name):
+            raise wrong(("screens", name), "is in a menu that only it leads to; put one of them into the bar")
+        for at, each in enumerate(place.shelves):
+            if any(len(control) not in (1, 1 + len(LANGUAGES)) for control in each.controls):
+                steps: Steps = ("screens", name, "shelves", at, "controls")
+                raise wrong(steps, "needs the key of each control alone, or with its name in every language")
+    held = [(("screens", name, "holds"), place.holds) for name, place in make.screens.items()]
+    for steps, listed in [(("bar", "entries"), make.bar.entries), *held]:
+        if twice := [each for each in listed if listed.count(each) > 1]:
+            raise wrong(steps, f"names {twice[0]} twice")
     if not {"home", LAUNCHER} <= {*entries(make)}:
         raise wrong(("bar",), "lacks home or apps among its entries; add both, all else hangs on them")
+
+
+def _above(make: Make, screen: str) -> list[str]:
+    """What leads to a screen, one after the other upwards, until the bar or one that was there before."""
+    found: list[str] = []
+    while (screen := holder(make, screen)) and screen not in found:
+        found.append(screen)
+    return found
 
 
 def _fields(text: str) -> list[str]:

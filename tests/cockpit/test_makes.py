@@ -11,11 +11,12 @@ import pytest
 from automotive_cosim.cockpit import tree
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.make import HOME
+from automotive_cosim.cockpit.make import HOME, BarOfMake, Make, OwnScreen, Shelf
 from automotive_cosim.cockpit.registry import apps, apps_in
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import FeedbackCode, RoadNetwork
 from automotive_cosim.contracts.given import CarMake
-from automotive_cosim.contracts.ids import resource_id
+from automotive_cosim.contracts.ids import key_of, resource_id
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import parse
 from tests.laws import over
@@ -62,6 +63,17 @@ def test_only_what_stands_in_the_bar_or_the_launcher_opens_by_name(name: CarMake
 
 
 BAR = 'bar = { entries = ["home", "apps"] }\n'
+TITLED = 'title = ["a", "b", "c", "d"]\nicon = "SEAT"\n'
+
+
+def menu(name: str, *holds: str) -> str:
+    return f"[screens.{name}]\n{TITLED}holds = {[each.strip(chr(34)) for each in holds]}\n"
+
+
+def shelves(name: str, *controls: str) -> str:
+    return f'[screens.{name}]\n{TITLED}shelves = [{{ of = "climate", controls = [{", ".join(controls)}] }}]\n'
+
+
 WRONG = {
     'bar = { side = "inside" }': "line 1: no side named",
     'bar = { entries = ["home", "aps"] }': "did you mean",
@@ -75,6 +87,12 @@ WRONG = {
     BAR + '[look.day]\nsurfaces = "FFFFFF"': "did you mean",
     BAR + '[look.icons]\nHOME = "no_such_glyph"': "line 3",
     "[wheels]\ncount = 4": "line 1",
+    'bar = { entries = ["home", "apps", "home"] }': "names home twice",
+    BAR + menu("a", "b") + menu("b", "a"): "only it leads to",
+    BAR + menu("a", "a"): "only it leads to",
+    BAR + menu("vehicle", '"A b"') + menu('"A b"', "seats"): "is no name of a screen",
+    BAR + menu("vehicle", "seats", "seats"): "names seats twice",
+    BAR + shelves("vehicle", '["hvac.front_defroster", "a", "b"]'): "in every language",
 }
 
 
@@ -83,6 +101,23 @@ def test_what_is_wrong_in_a_file_is_told_with_its_line(text: str, told: str) -> 
     with pytest.raises(UserError, match=r"own\.toml") as refused:
         tree.check(parse(text, Path("own.toml")))
     assert told in str(refused.value)
+
+
+def test_a_shelf_shows_what_there_is_of_any_part_of_any_screen(network: RoadNetwork) -> None:
+    cockpit = Cockpit(network, rng=np.random.default_rng(1))
+    cockpit.sense(outside(speed_kmh=0.0), 0.0)
+    for of, control in (
+        ("climate", "hvac.misspelt"),
+        ("seats", "seat.driver"),
+        ("map", "map.view"),
+        ("media", "media"),
+    ):
+        place = OwnScreen(("a", "b", "c", "d"), "SEAT", shelves=(Shelf(of, ((control,),)),))
+        cockpit.fit(ScreenSize.STANDARD, Make(BarOfMake(entries=("home", "apps", "own")), screens={"own": place}))
+        assert cockpit.visit("own").code is FeedbackCode.OK
+        shown = {key_of(one.resource_id) for one in cockpit.elements()}
+        assert any(f"{key}.".startswith(f"{control}.") for key in shown) is (of in ("seats", "media")), control
+        assert cockpit.visit("home").code is FeedbackCode.OK
 
 
 def test_a_make_of_ones_own_is_named_by_its_content_and_must_not_change(tmp_path: Path) -> None:
