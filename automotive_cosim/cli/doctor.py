@@ -123,8 +123,9 @@ def _of_model(name: str) -> Iterator[Finding]:
         fix = "give a model that was trained to follow instructions"
         yield Finding("answers", Health.LIMITED, "no template of conversations in the file", fix)
     room = f"{model.context_tokens:,} tokens of a question (?context=N for more)"
-    fits = 0 < told.context < model.context_tokens
-    yield Finding("context", Health.LIMITED if fits else Health.OK, f"{told.context:,} tokens trained on; {room}")
+    trained = f"{told.context:,} tokens trained on" if told.context else "the file names no length"
+    is_short = 0 < told.context < model.context_tokens
+    yield Finding("context", Health.LIMITED if is_short else Health.OK, f"{trained}; {room}")
     yield Finding("tools", Health.OK, "functions in its template" if told.has_tools else "none in its template")
     yield Finding("pictures", Health.OK, "none: the local runtime is given text alone")
     read, wrote = (Local(f"{name}{'&' if '?' in name else '?'}max_tokens={most}") for most in (1, 32))

@@ -145,8 +145,9 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
     @property
     def situation(self) -> Hashable:
         """The drive up to the hand-over, on which no agent acts."""
-        shown = Conditions(language=self.conditions.language, make=self.conditions.make)
-        return replace(self, agent="", model="", without=(), conditions=shown, repeat=0)
+        given = self.conditions
+        before = Conditions(language=given.language, make=given.make, attention=given.attention)
+        return replace(self, agent="", model="", without=(), conditions=before, repeat=0)
 
     @property
     def instance(self) -> tuple[Hashable, ...]:

@@ -37,9 +37,8 @@ def read_key(path: Path) -> bytes:
     except OSError as error:
         raise UserError(f"cannot read the key in {path}: {error.strerror or error}") from error
     if not LEAST <= len(key) <= MOST:
-        raise UserError(
-            f"{path} has {len(key)} bytes; a key has {LEAST} to {MOST}, as `openssl rand -hex 32` makes"
-        )
+        size = f"more than {MOST}" if len(key) > MOST else len(key)
+        raise UserError(f"{path} has {size} bytes; a key has {LEAST} to {MOST}, as `openssl rand -hex 32` makes")
     return key
 
 

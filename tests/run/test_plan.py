@@ -93,12 +93,12 @@ def test_a_key_draws_seeds_and_places_that_nobody_else_can_tell(tmp_path):
     assert [job.id for job in make_plan(first.as_json()).jobs()] == [job.id for job in first.jobs()]
     with pytest.raises(UserError, match="--split hidden"):
         drawn(plan(tasks=["hvac_parched"]), b"a" * 16)
-    for size, fits in ((15, False), (16, True), (1024, True), (1025, False)):
+    for size, fits in ((15, False), (16, True), (1024, True), (1025, False), (3000, False)):
         (tmp_path / "key").write_bytes(b"x" * size + b"\n")
         if fits:
             assert read_key(tmp_path / "key") == b"x" * size
         else:
-            with pytest.raises(UserError, match=f"{size} bytes"):
+            with pytest.raises(UserError, match="more than 1024 bytes" if size > 1024 else f"{size} bytes"):
                 read_key(tmp_path / "key")
 
 
@@ -316,6 +316,15 @@ def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
     assert english.unspoken() == ()
     assert {job.id for job in english.jobs()} > {job.id for job in both.jobs() if job.conditions.language == "en"}
     assert len({job.situation for job in both.jobs()}) == len(both.jobs())
+
+
+def test_what_changes_the_drive_before_the_agent_acts_is_another_situation():
+    same = {"order": ["plain", "full"], "hear": ["text", "cabin"]}
+    for name, values in {"make": ["home", "birch"], "attention": ["off", "on"], **same}.items():
+        jobs = plan(tasks=["hvac_fan_max"], **{name: values}).jobs()
+        assert len({job.situation for job in jobs}) == (1 if name in same else 2) * len(
+            {job.half for job in jobs}
+        ), name
 
 
 def test_a_language_that_is_not_there_is_refused():
