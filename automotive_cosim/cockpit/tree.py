@@ -180,12 +180,12 @@ def check(document: Document) -> None:
             raise wrong(("screens", name), "is in a menu that only it leads to; put one of them into the bar")
         for at, each in enumerate(place.shelves):
             if any(len(control) not in (1, 1 + len(LANGUAGES)) for control in each.controls):
-                steps: Steps = ("screens", name, "shelves", at, "controls")
-                raise wrong(steps, "needs the key of each control alone, or with its name in every language")
+                how = "needs the key of each control alone, or with its name in every language"
+                raise wrong(("screens", name, "shelves", at, "controls"), how)
     held = [(("screens", name, "holds"), place.holds) for name, place in make.screens.items()]
-    for steps, listed in [(("bar", "entries"), make.bar.entries), *held]:
+    for where, listed in [(("bar", "entries"), make.bar.entries), *held]:
         if twice := [each for each in listed if listed.count(each) > 1]:
-            raise wrong(steps, f"names {twice[0]} twice")
+            raise wrong(where, f"names {twice[0]} twice")
     if not {"home", LAUNCHER} <= {*entries(make)}:
         raise wrong(("bar",), "lacks home or apps among its entries; add both, all else hangs on them")
 
