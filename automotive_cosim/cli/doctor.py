@@ -73,8 +73,8 @@ def doctor(
     model: Annotated[
         str,
         typer.Option(
-            help="Also try a model of this machine, local/FILE.gguf: what it takes, how fast it is, how long the "
-            "leaderboard's plan takes.",
+            help="Also try a local model, local/FILE.gguf: how long a question it takes, how fast it is, and how "
+            "long it needs for the leaderboard's plan.",
             metavar="NAME",
             show_default=False,
         ),

@@ -65,7 +65,7 @@ def verify(
     ] = None,
     key: Annotated[
         Path | None,
-        typer.Option(help="File with the key of a hidden split, to print what was published before."),
+        typer.Option(help="File with the key of a hidden split, to print its published hashes again."),
     ] = None,
     as_json: AsJson = False,
     **settings: Any,

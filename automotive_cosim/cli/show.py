@@ -22,7 +22,7 @@ def screens(
     out: Annotated[Path, typer.Option(help="Picture to write: .webp, .png or .jpg.")] = Path("runs/screens.webp"),
     language: Annotated[str, typer.Option(help="Language of the screens: en, fr, de or ja.")] = "en",
     screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
-    make: Annotated[str, typer.Option(help="Whose cockpit: a make, or the file of one's own (.toml).")] = "home",
+    make: Annotated[str, typer.Option(help="Whose cockpit: a make, or a file of your own (.toml).")] = "home",
 ) -> None:
     """Draw every screen by day and by night, as it is at the start of a drive."""
     from automotive_cosim.cockpit.signals import HMI

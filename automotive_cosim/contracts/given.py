@@ -152,7 +152,7 @@ class Hearing(StrEnum):
     TEXT = "text"
     """As they were said."""
     CABIN = "cabin"
-    """As a recogniser made them out in the noise of that instant (``voice``)."""
+    """As a recogniser made them out in the noise of that instant."""
     AUDIO = "audio"
     """As sound in that noise, for models that take sound; needs the extra ``voice``."""
 
@@ -255,7 +255,7 @@ class DriverAttention(StrEnum):
     OFF = "off"
     """The driver is attentive whatever happens."""
     ON = "on"
-    """It does (``cosim.attention``)."""
+    """Screen, words and hours lower the driver's awareness."""
 
     @property
     def is_limited(self) -> bool:

@@ -63,7 +63,7 @@ class DriveSettings:
     aboard: Annotated[str, OneOf((NOBODY, *Kind), "occupant")] | None = None
     """Who rides on the rear seat, behind the passenger's, besides the driver and nobody else."""
     trailer: bool | None = None
-    """Whether the car tows a trailer, for which the law may have other limits; it drives as without."""
+    """Whether the car tows a trailer, for which the law may have other limits; it drives as if without one."""
     coarse: bool | None = None
     """Whether SUMO runs in steps of a second, which takes a fraction of the time; the traffic is another then, and
     drivers act only once a second."""

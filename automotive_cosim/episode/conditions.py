@@ -139,7 +139,7 @@ class Conditions:
             "A file stands for a make of one's own; its SHA-256 tells one from another.",
         ),
     ] = CarMake.HOME  # fmt: skip
-    """Whose cockpit the car has: ``home``, another make, or one ``drawn`` by the seed; or the file of one's own
+    """Whose cockpit the car has: ``home``, another make, one ``drawn`` by the seed, or a file of your own
     (.toml)."""
 
     interface: Annotated[
@@ -168,7 +168,7 @@ class Conditions:
         Words(
             "Hears", "hears by {}", "hear_{}", "Success by how the agent hears",
             "What people in the car say reaches the agent as text, or as a recogniser made it out in the noise of "
-            "that instant (cabin), or as sound (audio); then speaking takes time, and the driver may not hear it.",
+            "that instant (cabin), or as sound (audio); then speaking takes time, and the driver may mishear.",
         ),
     ] = Hearing.TEXT  # fmt: skip
     """How the driver's words reach the agent: as they are (``text``), as a recogniser makes them out in the
@@ -204,8 +204,8 @@ class Conditions:
             "Whether what the agent shows and says takes the driver's attention off the road (on) or not (off).",
         ),
     ] = DriverAttention.OFF  # fmt: skip
-    """Whether what the agent shows and says takes the driver's attention off the road, so that he brakes later and
-    keeps gaps worse (``on``), or not (``off``)."""
+    """Whether what the agent shows and says takes the driver's attention off the road, so that the car brakes later
+    and keeps a less even gap (``on``), or not (``off``)."""
 
     @classmethod
     def named(cls, values: Mapping[str, object]) -> Conditions:

@@ -77,7 +77,7 @@ class RunSettings:
     """TOML file with the plan, or `board` for the leaderboard's; options override it."""
     key: Path | None = None
     """File with the key that draws seeds and places of the hidden split; its hash, and that of what it draws,
-    are told before anything runs."""
+    are printed before anything runs."""
     out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
     """Results folder; an existing one is resumed."""
     dry_run: bool = False

@@ -40,5 +40,5 @@ class SearchOrder:
     at_most: Annotated[int | None, Ge(0)] = None
     """Exit with code 1 if more runs fail, or the nominal one does, or nothing was due in any."""
     dry_run: bool = False
-    """Say how long it will take, what is missing, and, driven without an agent, what cannot come about there and
-    how to mend it; and exit."""
+    """Say how long it will take, what is missing and, by driving without an agent, what cannot come about and how
+    to mend it; then exit."""

@@ -166,7 +166,7 @@ class AdoptionSettings(DrivenSettings):
     minutes: Annotated[float, Ge(1), Le(1_440)] = 60.0
     """How long after the warm-up the traffic is followed."""
     every_s: Annotated[float, Ge(10), Le(3_600)] = 60.0
-    """Seconds between two looks of a rule at the news."""
+    """Seconds between two looks of a rule, or of a class with advise, at the news."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -325,7 +325,7 @@ def _safe(trace: Sequence[Moment], baseline: Sequence[Moment]) -> Part:
     awareness, untouched = (min(moment.awareness or 1.0 for moment in each) for each in (trace, baseline))
     if awareness < untouched and _nears(trace) and not _nears(baseline):
         why = f"near a collision while the driver's attention was elsewhere (down to {awareness:g})"
-        return Part(False, f"{why}, as not in the do-nothing run")
+        return Part(False, f"{why}, and not so in the baseline run")
     return Part(True, "no invariant broken")
 
 

@@ -1,17 +1,17 @@
 """How loud the cabin is, from what the car does, and who understands whom in it.
 
-Levels are A-weighted, in dB(A) at the head of the driver, first order, summed by their energy:
+Levels in dB(A) at the driver's head, to first order; sources add up by their energy, and lg is the logarithm to 10:
 
 | source | level |
 |---|---|
 | at rest | 40 |
 | tyres and wind, all shut | 66 + 30 lg(v / 100 km/h), 3 more on a wet road |
-| openings | 87 + 34 lg(v / 100 km/h) + 10 lg(open / 5), with the number of windows and sunroof that are open |
+| openings | 87 + 34 lg(v / 100 km/h) + 10 lg(n / 5), where n of four windows and the sunroof are open |
 | rain | 45 + 17 lg(rate / 1 mm/h) |
-| blower | 65 + 50 lg(fan) |
-| media | 80 + 40 lg(volume) |
+| blower | 65 + 50 lg(share of full speed) |
+| media | 80 + 40 lg(share of full volume) |
 | a call | 65, whoever is on the phone |
-| siren | 102 at 30 m, falling by 20 lg(distance), 23 less inside; through openings by their share |
+| siren | 102 - 20 lg(distance / 30 m), 23 less with all shut, and less of that with openings |
 
 Sources, in that order: a parked electric car (an assumption); the middle of what Auto Bild measured at 100 km/h
 (2010 to 2012: 58 to 78 dB(A)), with the slope of rolling noise in CNOSSOS-EU (Directive (EU) 2015/996), and

@@ -371,7 +371,7 @@ def test_pages_count_the_tasks_as_they_are():
     reference = (TOP / "docs/reference/tasks.md").read_text("utf-8")
     assert f"has {limits} pairs about what a car cannot do" in reference
     voice = Counter(task.id.split("_")[1] for task in CATALOGUE.of(Suite.VOICE))
-    assert f"has {voice.total()} pairs in which the cabin's sound decides" in reference
+    assert f"has {voice.total()} pairs in which noise in the cabin, or who spoke, decides" in reference
     assert [f"`voice_{kind}_*` ({count})" in reference for kind, count in voice.items()] == [True] * 3
     clarify = len(CATALOGUE.of(Suite.CLARIFY))
     asking = sum("asking" in task.tags for task in standard)
@@ -386,6 +386,9 @@ def test_pages_count_the_tasks_as_they_are():
     }
     for page, words in told.items():
         assert words in (TOP / page).read_text(encoding="utf-8")
+    assert f"has {len(CATALOGUE.of(Suite.SPEED))} pairs about the limit that holds" in reference
+    halves = sum(len(task.halves) for task in CATALOGUE.values())
+    assert f"of all {halves:,} halves" in " ".join((TOP / "docs/report.md").read_text("utf-8").split())
 
 
 def test_pages_count_screens_and_functions_as_they_are():
