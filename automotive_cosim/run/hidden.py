@@ -50,9 +50,7 @@ def drawn(plan: Plan, key: bytes) -> Plan:
         UserError: the plan is not one of the hidden split, or lists trials itself.
     """
     if plan.split != HIDDEN or plan.trials:
-        raise UserError(
-            f"a key draws the runs of --split {HIDDEN}, of a plan that lists none; give both or no key"
-        )
+        raise UserError(f"a key draws the runs of --split {HIDDEN}, of a plan that lists none; give both or no key")
     return replace(
         plan, tasks=(), drives=(), scenarios=(), seeds=(0,), everywhere=False, trials=tuple(_drawn(plan, key))
     )
