@@ -12,7 +12,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import Interface
+from automotive_cosim.contracts.given import Interface, OrFile
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import DriveSpec, TrialSpec
@@ -79,14 +79,17 @@ def _sparing(each: inspect.Parameter, choices: Collection[str] = ()) -> inspect.
 
 
 def conditions_of(words: Mapping[str, str]) -> Conditions:
-    """The conditions of a door, in words.
+    """The conditions of a door, in words. Nobody names files of this machine through a door.
 
     Raises:
         UserError: there is no such condition or value.
     """
-    for name in words:
-        if name not in {each.name for each in INPUTS}:
-            raise UnknownNameError("condition", name, [each.name for each in INPUTS])
+    known = {each.name: each for each in INPUTS}
+    for name, word in words.items():
+        if name not in known:
+            raise UnknownNameError("condition", name, known)
+        if isinstance(known[name].default, OrFile) and word not in known[name].choices:
+            raise UnknownNameError(name, str(word), known[name].choices)
     return Conditions.named(words)
 
 

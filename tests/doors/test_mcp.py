@@ -13,11 +13,12 @@ from typing import Any
 
 import pytest
 
+from automotive_cosim.cockpit import tree
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import Interface
-from automotive_cosim.doors.shared import own_scenario
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.contracts.given import CarMake, Interface
+from automotive_cosim.doors.shared import conditions_of, own_scenario
+from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.functions import functions
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.script import ScriptedAgent
@@ -404,3 +405,12 @@ def test_what_clients_write_as_text_or_null_is_taken(service: EpisodeService) ->
         assert turn["feedback"]["code"] == "ok"
 
     inside(service, talk)
+
+
+def test_nobody_names_files_of_this_machine_through_a_door(tmp_path):
+    (tmp_path / "own.toml").write_text('bar = { entries = ["home", "apps"] }', encoding="utf-8")
+    named = tree.resolved(str(tmp_path / "own.toml"))
+    for given in ({"make": str(tmp_path / "own.toml")}, {"make": named}, {"prompt": f"mine.md@{named[-64:]}"}):
+        with pytest.raises(UserError, match="choose from"):
+            conditions_of(given)
+    assert conditions_of({"make": "drawn", "prompt": "short", "hear": "cabin"}).make is CarMake.DRAWN
