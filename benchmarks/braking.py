@@ -10,9 +10,8 @@ from __future__ import annotations
 import argparse
 import tempfile
 from pathlib import Path
+from typing import Any
 
-import libsumo
-import matplotlib.pyplot as plt
 import numpy as np
 
 from automotive_cosim.cosim.attention import CALLED, FADES_S, MIND, SPENT, SPENT_H, Asked, Attention
@@ -43,7 +42,7 @@ def road(folder: Path) -> list[str]:
     return ["-n", str(net), "-r", str(routes), "--step-length", str(STEP_S), "--no-step-log", "--no-warnings"]
 
 
-def braked(options: list[str], awareness: float, seed: int) -> tuple[float, float, float]:
+def braked(libsumo: Any, options: list[str], awareness: float, seed: int) -> tuple[float, float, float]:
     """Seconds until the car brakes at 1 m/s2, how uneven its gap was before in seconds, and its hardest braking."""
     libsumo.load([*options, "--seed", str(seed)])
     libsumo.simulationStep()
@@ -65,6 +64,8 @@ def braked(options: list[str], awareness: float, seed: int) -> tuple[float, floa
 
 def drawn(path: Path, delays_s: np.ndarray, ends_s: np.ndarray) -> None:
     """The three curves beside their data."""
+    import matplotlib.pyplot as plt
+
     figure, (eyes, mind, fade) = plt.subplots(1, 3, figsize=(12, 3.6), layout="constrained")
     for look_s, colour in ((2.0, "C0"), (5.0, "C1")):
         attention = Attention()
@@ -97,10 +98,12 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=150)
     parser.add_argument("--plot", type=Path, help="file of the plot")
     parsed = parser.parse_args()
+    import libsumo
+
     with tempfile.TemporaryDirectory() as folder:
         options = road(Path(folder))
         libsumo.start(["sumo", *options])
-        found = np.array([[braked(options, each, seed) for seed in range(parsed.seeds)] for each in AWARE])
+        found = np.array([[braked(libsumo, options, each, seed) for seed in range(parsed.seeds)] for each in AWARE])
     later_s = found[:, :, 0] - found[:1, :, 0]
     ends_s = 1.96 * later_s.std(axis=1) / parsed.seeds**0.5
     print("| awareness | delay, s (95 %) | gap varies by, s | hardest braking, m/s² |\n|---:|---:|---:|---:|")

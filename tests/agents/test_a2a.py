@@ -93,7 +93,7 @@ def test_a_task_is_told_as_car_bench_tells_it_and_calls_are_steps(
     (opening,) = remote.messages
     assert text(opening).startswith("System: You operate a car")
     assert text(opening).endswith("\n\nUser: Fan to the maximum")
-    assert "## The car\nspeed_kmh" in text(opening)
+    assert "## The car now\nspeed_kmh" in text(opening)
     assert opening["metadata"] == {"source": "user"}
     tools = data(opening)["tools"]
     assert tools == [as_openai(each) for each in offered(CALLS.interface, CALLS.geo)]

@@ -172,7 +172,7 @@ def test_an_assessment_is_counted_before_it_is_unfolded(monkeypatch: Any) -> Non
     def unfolds(plan: Plan) -> Any:
         raise AssertionError("it was unfolded")
 
-    for name in ("jobs", "_unfolded"):
+    for name in ("jobs", "unfolded"):
         monkeypatch.setattr(Plan, name, unfolds)
     began_s = time.process_time()
     for config in ({"seeds": SEEDS}, {"seeds": SEEDS[:90], "repeats": 1000}, {"tasks": ["*"], "seeds": SEEDS}):

@@ -130,7 +130,7 @@ def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):
     (number, (_, names)) = next(
         (number, kept) for number, kept in enumerate(whole["classes"]) if kept[0].endswith(":DrivingState")
     )
-    assert names[-1] == "end"
+    assert names[-1] == "trailer"
     changed = json.loads(json.dumps(whole))
     changed["classes"][number][1] = [*names[:-1], "a_field_of_old"]
     assert stored(changed) == judged

@@ -22,6 +22,7 @@ from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.episode.episode import counterfactual
 from automotive_cosim.episode.situation import PARKED
 from automotive_cosim.proof.mutations import another_value
+from automotive_cosim.tasking import verdict
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.task import Start, Task
@@ -72,7 +73,7 @@ class Solved:
 
     def surplus(self, cockpit: Cockpit, allowed: frozenset[str]) -> set[str]:
         """What that cockpit commands and was not asked for."""
-        return set(difference(self.beside, cockpit.commands())) - allowed
+        return set(difference(self.beside, cockpit.commands())) - allowed - verdict.SPOKEN
 
 
 @pytest.fixture(scope="module")
