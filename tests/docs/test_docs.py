@@ -185,7 +185,7 @@ TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
     (r"run", NOT_RUN, "needs what only the reader has, or takes ten seconds in its own scenario; tests/cli run it"),
     (r"tasks validate", ("--gates", "start", "--seeds", "0"), "all gates take minutes; tests/proof tries them"),
     (r"report runs/(hunt|drives|speed)", NOT_RUN, "tests/safety and tests/run/test_drives.py report on such"),
-    (r"publish .*(runs/board|NAME)", NOT_RUN, "needs the leaderboard's evaluation; `make docs` checks its bundles"),
+    (r"publish .*(runs/board|NAME|hidden)", NOT_RUN, "needs evaluations of others; `make docs` checks two bundles"),
     (r"(serve|mcp|a2a)", NOT_RUN, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", NOT_RUN, "measures for a minute; tests/cli/test_bench.py runs it"),
     (r"scenarios (check|download)", NOT_RUN, "takes minutes or the network; tests/osm has them"),
