@@ -23,6 +23,7 @@ from zlib import crc32
 
 import pytest
 import typer.main
+from hypothesis import HealthCheck, settings
 
 from automotive_cosim.cli.main import main
 from automotive_cosim.contracts import (
@@ -49,6 +50,10 @@ for _name in (
     *PROXIES, *map(str.upper, PROXIES),
 ):  # fmt: skip
     os.environ.pop(_name, None)  # what is printed, and who answers at 127.0.0.1, must not depend on the machine
+
+# How long an example takes says how busy the machine is.
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")
 
 # Building all commands is nine tenths of running one.
 typer.main.get_command = cache(typer.main.get_command)

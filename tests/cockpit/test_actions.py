@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from automotive_cosim.cockpit.actions import FIELDS, check, grammar, parse, perform, to_json
@@ -177,7 +177,6 @@ json_values = st.recursive(
 )
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow])  # which a busy machine fails
 @given(json_values | st.dictionaries(st.sampled_from(["action_type", *SAMPLES]), json_values))
 @pytest.mark.slow
 def test_anything_is_an_action_or_an_action_error(value: object):

@@ -84,7 +84,7 @@ def test_thousands_of_touches_break_nothing(
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(text=st.text(max_size=200), screen=st.sampled_from(sorted(pages())), clear=st.booleans())
 def test_any_text_can_be_typed_shown_and_said(
     network: RoadNetwork, outdoors: Callable[..., Surroundings], text: str, screen: str, clear: bool

@@ -328,7 +328,7 @@ def _put(value: object, path: tuple[str | int, ...], new: object) -> object:
 
 
 @pytest.mark.parametrize("name", TOML)
-@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data(), new=_values)
 @pytest.mark.slow
 def test_any_value_anywhere_is_read_or_refused_and_what_is_read_passes_the_schema(
@@ -407,7 +407,7 @@ _entries = (
 
 
 @pytest.mark.slow
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=250)
 @given(kind=st.sampled_from(ActionType), given_fields=st.dictionaries(_fields, _entries, max_size=4))
 def test_the_schema_of_an_action_takes_what_the_program_takes(
     kind: ActionType, given_fields: dict[str, object]

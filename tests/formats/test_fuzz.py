@@ -40,9 +40,7 @@ from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, w
 from automotive_cosim.scenarios import open_scenario
 
 GRID = scenarios.load("grid").folder
-QUICK = settings(
-    max_examples=30, deadline=None, database=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+QUICK = settings(max_examples=30, database=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 LONGEST = 600
 """Characters of a refusal."""
 
@@ -287,7 +285,7 @@ FIELDS = "index x y text seconds speed_kmh destination direction on app_name".sp
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(kind=st.sampled_from(ActionType), fields=st.dictionaries(st.sampled_from(FIELDS), JSON, max_size=3))
 def test_any_action_is_read_or_refused(kind: ActionType, fields: dict[str, object]) -> None:
     text = json.dumps({"action_type": str(kind)} | fields)
@@ -303,7 +301,7 @@ SPACE = action_space(100, 100)
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     name=st.sampled_from(sorted(SPACE)),
     value=JSON | st.integers(-3, 99),

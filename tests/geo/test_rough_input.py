@@ -56,7 +56,7 @@ weathers = st.none() | st.builds(
 
 
 @pytest.mark.slow
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(lon=lons, lat=lats, time=times, road=roads, weather=weathers)
 def test_there_is_a_context_everywhere_and_always(
     geo: Geo,
@@ -90,7 +90,7 @@ def test_a_position_is_on_earth_or_refused(lon: float, lat: float) -> None:
         assert "\n" not in str(error)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(lat=st.floats(-89, 89))
 def test_both_sides_of_the_date_line_are_one_place(lat: float) -> None:
     east, west = Atlas().place(180.0, lat), Atlas().place(-180.0, lat)
@@ -127,7 +127,7 @@ def test_the_two_half_past_twos_of_autumn_differ_by_an_hour_of_sun(locate: Calla
 SHIPPED = sorted(Path(str(files("automotive_cosim.geo.data"))).glob("*.toml"))
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_a_damaged_file_is_refused_with_one_line_or_still_well_formed(tmp_path: Path, data: st.DataObject) -> None:
     """A line lost, doubled or overwritten in a shipped file."""
@@ -155,7 +155,7 @@ _toml = st.recursive(
 )
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(field=st.sampled_from(FIELDS), value=_toml)
 @pytest.mark.slow
 def test_any_value_in_any_field_of_a_rule_is_read_or_refused(tmp_path: Path, field: str, value: object) -> None:

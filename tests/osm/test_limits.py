@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import product
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from automotive_cosim.geo.place import Atlas, Place, shipped
@@ -53,7 +53,6 @@ def read(tags: dict[str, str], country: str = "FR", road_class: str = "tertiary"
     return MappedRoad(tags, country, stated_limits(tags), assumed, built_up, is_dense=False)
 
 
-@settings(deadline=None)
 @given(TAGS, st.sampled_from(sorted(ROAD_CLASSES)), st.sampled_from([*LIMITS, "", "XX"]))
 def test_every_road_gets_one_limit_for_each_direction(tags: dict[str, str], road_class: str, country: str) -> None:
     road = read(tags, country, road_class)
@@ -66,7 +65,6 @@ def test_every_road_gets_one_limit_for_each_direction(tags: dict[str, str], road
         assert ("zone:traffic:assumed" in road.parameters(edge)) == (road.built_up is None)
 
 
-@settings(deadline=None)
 @given(TAGS, st.sampled_from(ZONES), st.sampled_from([*ZONE_KEYS, "zone:traffic"]))
 def test_no_zone_overrides_a_sign(tags: dict[str, str], zone: str, key: str) -> None:
     """Whatever else is said: adding or changing a zone leaves the limit of a road with a number as it is. It is not
