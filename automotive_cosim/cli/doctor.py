@@ -99,7 +99,8 @@ def doctor(
 
 
 def _of_model(name: str) -> Iterator[Finding]:
-    """
+    """What there is to say about a model of this machine, of which two questions are asked.
+
     Raises:
         UserError: it is no model of this machine, or its file none that can be run.
         SetupError: its runtime is not installed.

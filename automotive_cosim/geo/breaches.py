@@ -309,7 +309,7 @@ def _too_close(state: Observed) -> Iterator[_Breach]:
             gap = leader.gap_m / speed_mps if rule.unit == "s" else leader.gap_m
             if gap < applied.value:
                 short = applied.value - gap
-                yield _Breach(ViolationKind.DISTANCE, rule.id, rule.text, rule.law, rule.status, short, rule.unit)
+                yield _Breach(ViolationKind.DISTANCE, rule.id, rule.said, rule.law, rule.status, short, rule.unit)
 
 
 def _horn_and_screen(state: Observed) -> Iterator[_Breach]:

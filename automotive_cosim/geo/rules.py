@@ -112,14 +112,19 @@ class Rule:
         """The conditions of all its cases."""
         return tuple(test for case in self.cases for test in case.when)
 
-    @cached_property
-    def stated(self) -> str:
-        """The rule in words, with its value if it has only one, and its source."""
+    @property
+    def said(self) -> str:
+        """The rule in words, with its value if it has only one."""
         value = self.cases[0].value if len(self.cases) == 1 else ""
         amount = f"{value:g} {self.unit} " if isinstance(value, float) else ""
         if self.topic == "limit" and value == "none":
             amount = "none "
-        return f"{amount}{self.text} ({self.country} {self.law}, {self.status} {self.as_of})"
+        return f"{amount}{self.text}"
+
+    @cached_property
+    def stated(self) -> str:
+        """The same with its source."""
+        return f"{self.said} ({self.country} {self.law}, {self.status} {self.as_of})"
 
     @cached_property
     def line(self) -> str:

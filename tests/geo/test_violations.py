@@ -259,6 +259,7 @@ def test_following_by_time_in_france(
     assert [v.rule for v in intervals] == ([] if short_s is None else ["FR.following_distance"])
     if short_s is not None:
         assert (intervals[0].margin, intervals[0].unit) == (pytest.approx(short_s), "s")
+        assert intervals[0].text == "2 s or more to the vehicle ahead"
 
 
 def test_following_by_metres_on_chinese_motorways(
