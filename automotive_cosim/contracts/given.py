@@ -174,6 +174,10 @@ class OrFile(StrEnum):
         made._name_ = made._value_ = value
         return made
 
+    def __reduce_ex__(self, protocol: object) -> tuple[type[Self], tuple[str]]:
+        """By its value: Python 3.11.2 stores members by name, under which there is none for a file."""
+        return type(self), (self.value,)
+
     @classmethod
     @abstractmethod
     def own(cls) -> str:
