@@ -258,8 +258,10 @@ def test_no_line_interrupts_who_acts_by_hand(monkeypatch: pytest.MonkeyPatch) ->
 
 
 SWALLOWED = """
-import os, sys, time, weakref
+import os, signal, sys, time, weakref
 from automotive_cosim.cli import main
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
 
 class Thing: pass
 
