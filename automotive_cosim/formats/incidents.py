@@ -92,11 +92,8 @@ class Roadworks(Incident):
     """Among the edge's lanes for cars, 0 nearest the kerb."""
 
 
-Shows = Literal["over all lanes", "by lane"]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Sign(Incident):
+class SpeedSign(Incident):
     """A sign of a lower limit: one with a plate, or a variable one."""
 
     kind: Literal["sign"] = "sign"
@@ -107,7 +104,7 @@ class Sign(Incident):
     plate: str = ""
     """When it holds, in OpenStreetMap's words: ``wet``, ``snow``, ``Mo-Fr 07:00-17:00``; without it, the sign is a
     variable one."""
-    shows: Shows = "over all lanes"
+    shows: Literal["over all lanes", "by lane"] = "over all lanes"
     """Where a variable sign shows it; by lane, over that at the kerb, and 20 km/h more over the others."""
 
 
@@ -408,7 +405,7 @@ class AheadIncident(EgoIncident):
     """Of the queue, at first."""
     plate: str = ""
     """Of the sign, as of ``kind = "sign"``."""
-    shows: Shows = "over all lanes"
+    shows: Literal["over all lanes", "by lane"] = "over all lanes"
     """Where a sign without a plate shows it."""
     other_way: bool = False
     """Whether it is on the carriageway of the other direction, where it concerns others."""
@@ -417,7 +414,7 @@ class AheadIncident(EgoIncident):
 AnyIncident = Annotated[
     Breakdown
     | Roadworks
-    | Sign
+    | SpeedSign
     | Jam
     | Closure
     | SchoolZone

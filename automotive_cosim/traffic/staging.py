@@ -120,7 +120,7 @@ class _Roadworks(StagedIncident):
 class _Sign(StagedIncident):
     """A sign with a plate, or a variable one."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.Sign) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.SpeedSign) -> None:
         self._stage, self._incident = stage, incident
         self._by_lane = incident.shows == "by lane"
         for edge in incident.edges:
@@ -429,7 +429,7 @@ class _Ahead(StagedIncident):
         count = _covering(edges, TRACTOR_WAY_M) or len(way)
         return incidents.Tractor(from_edge=way[0], to_edge=way[count - 1], from_s=from_s, to_s=to_s)
 
-    def _signed(self, edges: Sequence[Edge], limit_kmh: float) -> incidents.Sign | None:
+    def _signed(self, edges: Sequence[Edge], limit_kmh: float) -> incidents.SpeedSign | None:
         """A sign at the beginning of some roads, as far as it is a lower limit there."""
         incident, by_lane = self._incident, self._incident.shows == "by lane"
         fit = tuple(
@@ -441,7 +441,7 @@ class _Ahead(StagedIncident):
         )
         if edges[0].edge_id not in fit:
             return None
-        return incidents.Sign(edges=fit, limit_kmh=limit_kmh, plate=incident.plate, shows=incident.shows)
+        return incidents.SpeedSign(edges=fit, limit_kmh=limit_kmh, plate=incident.plate, shows=incident.shows)
 
     def _jam(self, way: Sequence[str], edges: Sequence[Edge], tail_m: float) -> incidents.Jam | None:
         """A queue whose tail is about there."""
@@ -468,7 +468,7 @@ def _covering(edges: Sequence[Edge], length_m: float) -> int:
 STAGED: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], StagedIncident]] = {
     incidents.Breakdown: _Breakdown,
     incidents.Roadworks: _Roadworks,
-    incidents.Sign: _Sign,
+    incidents.SpeedSign: _Sign,
     incidents.Jam: _Jam,
     incidents.Closure: _Closure,
     incidents.SchoolZone: _SchoolZone,
