@@ -177,7 +177,7 @@ class Odd:
             case 0:
                 raise ValueError("a fault of one car")
             case 1:
-                return "left, I think"
+                return "left, I think" if len(car) % 2 else SlowDown(float("nan"))
             case 2 if len(self.asked) < 20:
                 self.slow.wait(30)
                 return None

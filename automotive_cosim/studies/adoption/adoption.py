@@ -6,6 +6,7 @@ equipped car is driven by SUMO, as it would be anyway, until its assistant asks 
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
@@ -369,7 +370,9 @@ class _Drive:
             if request is None or isinstance(request, Reroute):
                 return request
             if isinstance(request, SlowDown) and isinstance(request.speed_kmh, int | float):
-                return request
+                if 0 <= request.speed_kmh < math.inf:
+                    return request
+                raise UserError(f"advise returned a SlowDown to {request.speed_kmh} km/h; it has to be 0 or more")
             raise UserError(f"advise returned {request!r}; it has to return a Reroute, a SlowDown or None")
         known = car.alternatives()
         if len(known) < 2:
