@@ -14,7 +14,8 @@
 
 ``run`` adds a film and a page, and the whole state to each line of its steps; a pair is a folder with both. In the
 folder of an evaluation (``run.store``), trials whose pictures are kept have theirs in ``pictures/ID``; in that of a
-study, drives that are watched have theirs in ``live/ID``, with neither ``trial.json`` nor screenshots.
+study, drives that are watched, and the equipped cars of every share of one of adoption, have theirs in ``live/ID``,
+with neither ``trial.json`` nor screenshots.
 """
 
 from __future__ import annotations

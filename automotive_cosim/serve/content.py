@@ -256,7 +256,11 @@ class Content:
             planned = manifest.get("episodes")
             told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
             if (study := kind_of(manifest["plan"])) is not None:
-                told |= {"unit": study.unit, "seeds": len(manifest["plan"].get("seeds", ()))}
+                told |= {
+                    "study": manifest["plan"]["study"],
+                    "unit": study.unit,
+                    "seeds": len(manifest["plan"].get("seeds", ())),
+                }
             told["is_search"] = (entry.folder / PAGE).is_file()
             return {**shared, **told}
         return {**shared, "beside": self.records.beside(entry), **self._head(self.records.trial(entry, None))}
