@@ -13,8 +13,8 @@ import numpy as np
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.formats.files import read_bytes
-from automotive_cosim.formats.layout import sound
-from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.formats.layout import SOUNDS, sound
+from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.report.plot import BOTTOM, LEFT, RIGHT, TOP
 from automotive_cosim.voice.cabin import driver_snr_db
 from automotive_cosim.voice.engines import RATE_HZ, from_wav
@@ -67,8 +67,7 @@ def with_sounds(folder: Path, steps: Sequence[Json], goal: str) -> tuple[list[Js
             try:
                 wav = sounded(folder, step["step"], number, uttered)
                 if not (path := sound(folder, step["step"], number)).is_file():
-                    path.parent.mkdir(exist_ok=True)
-                    write_whole(path, wav)
+                    write_whole(make_folder(folder, SOUNDS) / path.name, wav)
             except SetupError:
                 why = f"After `{install_hint('voice')}`, the pages of `serve` and of further runs play it."
             except UserError as error:
