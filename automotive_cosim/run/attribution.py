@@ -37,8 +37,8 @@ REDRAWS, LEAST_REDRAWS = 4, 2
 """Further draws of both, with and without, where leaving an act out changed anything on the road; as many as the
 fewer where it is no more than chance."""
 DRIVEN, LEAST_REDRAWN = 12.0, 4.0
-"""How much is driven in all, as a multiple of the trial, so that twelve acts cost three times it; and what redraws and
-pairs may take even of many acts."""
+"""How much is driven in all, as a multiple of the trial, so that twelve acts cost three times it; and what
+redraws and pairs may take even of many acts."""
 PAIRED = 3.0
 """How much of it pairs take at most; there are none unless all acts that change nothing alone do so together in a
 redraw, too."""
