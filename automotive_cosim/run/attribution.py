@@ -100,6 +100,11 @@ def sentence(effects: Sequence[ActEffect]) -> str:
     """What was found, in a sentence: of the acts, those that changed the verdict or the road."""
     acts, failed = [each for each in effects if each.steps], culprit(effects)
     beside = f" What made it fail: {failed}." if failed else ""
+    routes = [each for each in effects if each.act not in (NO_ACT, LATE_ACT)]
+    if routes and not acts:
+        changed = sum(not each.is_neutral for each in routes)
+        of = counted(len(routes), "route beside the kept one", "routes beside the kept ones")
+        return f"{changed} of {of}, each driven from the same traffic, changed more than chance does."
     if not acts:
         return f"The agent commanded nothing: what happened is the do-nothing run.{beside}"
     changed = [each for each in acts if not each.is_neutral]
