@@ -102,9 +102,9 @@ def sentence(effects: Sequence[ActEffect]) -> str:
     beside = f" What made it fail: {failed}." if failed else ""
     routes = [each for each in effects if each.act not in (NO_ACT, LATE_ACT)]
     if routes and not acts:
-        changed = sum(not each.is_neutral for each in routes)
+        count = sum(not each.is_neutral for each in routes)
         of = counted(len(routes), "route beside the kept one", "routes beside the kept ones")
-        return f"{changed} of {of}, each driven from the same traffic, changed more than chance does."
+        return f"{count} of {of}, each driven from the same traffic, changed more than chance does."
     if not acts:
         return f"The agent commanded nothing: what happened is the do-nothing run.{beside}"
     changed = [each for each in acts if not each.is_neutral]

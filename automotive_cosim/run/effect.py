@@ -129,7 +129,8 @@ def compared(forks: Forks, left: Sequence[ForkedAct], draw: int) -> FigurePairs:
     if key not in forks.figures:
         one, other = (figures_of(moments, is_drive=forks.is_drive) for moments in forks.both(left, draw))
         forks.figures[key] = {name: (one[name], other[name]) for name in one if name in other}
-    return forks.figures[key]
+    found: FigurePairs = forks.figures[key]
+    return found
 
 
 def judged_without(forks: Forks, left: Sequence[ForkedAct], draws: Collection[int]) -> tuple[float | None, str]:
