@@ -189,9 +189,7 @@ def test_a_day_of_choices_is_the_same_traffic_and_asks_each_driver_as_he_sets_ou
         warm.call(chosen.prepare)
         silent = chosen.day(warm, {}, 180.0)
         warm.call(town.follow_town)
-        with closing(warm.road()) as road:
-            road.run(180.0)
-            plain = road.call(town.trips_of)
+        plain = trips_with(warm, 0.0, 180)
         assert {car: (trip.planned_s, trip.until_s, trip.has_left) for car, trip in plain.items()}.items() <= {
             car: (trip.planned_s, trip.until_s, trip.has_arrived) for car, trip in silent.items()
         }.items()
