@@ -27,7 +27,7 @@ OTHERS = "beside them"
 
 CEILINGS = {
     "agents": (6518, 66, 0),
-    "benchmarks": (2775, 18, 0),
+    "benchmarks": (2835, 18, 0),
     "cli": (4629, 13, 196),
     "cockpit": (18559, 186, 0),
     "contracts": (1561, 67, 0),
@@ -53,7 +53,7 @@ CEILINGS = {
     "schemas": (84, 0, 0),
     "serve": (2642, 22, 0),
     "service": (396, 4, 0),
-    "studies": (14013, 125, 90),
+    "studies": (14020, 125, 90),
     "tasking": (5318, 60, 0),
     "tasks": (15, 0, 0),
     "tests": (64995, 125, 0),
