@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
+from functools import lru_cache
 from pathlib import Path
 
 from automotive_cosim.contracts import Weather
@@ -29,6 +30,7 @@ from automotive_cosim.traffic.options import (
     SUMO_STEP_S,
     Configuration,
     read_configuration,
+    stamp,
     stated_and_set,
 )
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
@@ -71,6 +73,12 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     Raises:
         ScenarioError: the files are missing or invalid, or no two roads are connected.
     """
+    return _as_it_is(path, to_be_moved, stamp(read_configuration(path)))
+
+
+@lru_cache(maxsize=8)
+def _as_it_is(path: Path, to_be_moved: bool, files: tuple[object, ...]) -> Scenario:
+    """As ``foreign_scenario``; kept while its files are as they are, for to read a city takes seconds."""
     configuration = read_configuration(path)
     reader = NetworkReader(configuration.net)
     vet(configuration.net, reader, FORM)
