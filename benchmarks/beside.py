@@ -10,17 +10,24 @@ be shared. Of several rounds the least counts, of decisions the least quarter.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
 
 MARK = "XDG_RUNTIME_DIR"
 """Passed on to the keeper and to simulations: by its value, processes are told to be of one part."""
-LISTINGS = (("--help",), ("tasks", "list"), ("show", "drives"), ("list",), ("show", "agents"))
+LISTINGS = (
+    ("--help",),
+    ("run", "--help"),
+    ("tasks", "list"),
+    ("scenarios", "list"),
+    ("show", "drives"),
+    ("agents", "list"),
+)
 PARTS = ("listings", "lean", "full", "reset", "second", "kept")
 
 
@@ -44,7 +51,7 @@ def spent_s(command: list[str], mark: str, cwd: Path, until: Path | None = None)
     running = subprocess.Popen(
         command, cwd=cwd, env=os.environ | {MARK: mark}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
-    while running.poll() is None and not (until and any(until.rglob("*.png"))):
+    while running.poll() is None and not (until and any(until.rglob("*.jpg"))):
         seen |= processes(mark)
         time.sleep(0.05)
     if running.poll() is None:
@@ -103,19 +110,44 @@ def first_reset(net: str) -> dict[str, float]:
         "first reset of a drive: all, s": own_s + there_s,
         "first reset of a drive: simulation's process, s": there_s,
         "another seed's reset: this process, s": time.process_time() - begun_s,
+        "bare SUMO's load and warm-up, s": bare_s(net),
+        "memory of the simulation's process, MB": max(
+            memory_mb(pid) for pid in processes(mark) if pid != os.getpid()
+        ),
     }
 
 
-def listings(python: str, cwd: Path) -> dict[str, float]:
+def bare_s(net: str) -> float:
+    """Processor seconds in which libsumo alone loads the same files with the same traffic, and warms it up."""
+    from automotive_cosim.scenarios import open_scenario
+    from automotive_cosim.traffic.options import Setup, command_line, copied, read_configuration, run_options
+    from automotive_cosim.traffic.sumo import load_library, start
+
+    scenario, sumo = open_scenario(net), load_library()
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        options = run_options(copied(read_configuration(scenario.config), Path(folder)), Setup(scenario))
+        begun_s = time.process_time()
+        start(sumo, command_line(options))
+        for _ in range(round(scenario.sumo.warm_up_s / scenario.sumo.step_length_s)):
+            sumo.step()
+        return time.process_time() - begun_s
+
+
+def memory_mb(pid: int) -> float:
+    """Resident memory of a process."""
+    return int(Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def listings(program: str, cwd: Path) -> dict[str, float]:
     """Milliseconds of commands that only tell something."""
     found = {}
     for words in LISTINGS:
-        command = [python, "-m", "automotive_cosim.cli", *words]
+        command = [program, *words.split()]
         begun = os.times()
         subprocess.run(command, cwd=cwd, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
         ended = os.times()
         spent = ended.children_user - begun.children_user + ended.children_system - begun.children_system
-        found[f"{' '.join(words)}, ms"] = 1000 * spent
+        found[f"{words}, ms"] = 1000 * spent
     return found
 
 
@@ -125,7 +157,7 @@ def commands(part: str, other: Path, net: str) -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder, "runs")
         if part == "kept":
-            words = ["drive", "--family", "grid_june", "--minutes", "10", "--no-film", "--out", str(out)]
+            words = ["run", "--drive", "grid_june", "--see", "nothing", "--minutes", "10", "--out", str(out)]
             took_s = spent_s([program, *words], folder, other)
             size = sum(file.stat().st_size for file in out.rglob("*") if file.is_file())
             return {"a drive of ten minutes: s": took_s, "a drive of ten minutes: MB": size / 1e6}
@@ -143,7 +175,7 @@ def part_of(part: str, other: Path, net: str) -> dict[str, float]:
     if part in ("second", "kept"):
         return commands(part, other, net)
     if part == "listings":
-        return listings(str(other / ".venv/bin/python"), other)
+        return listings(str(other / ".venv/bin/automotive-cosim"), other)
     with tempfile.TemporaryDirectory() as mark:
         told = subprocess.run(
             [str(other / ".venv/bin/python"), str(Path(__file__).absolute()), str(other), "--own", part]
@@ -168,7 +200,6 @@ def main() -> None:
     given = parser.parse_args()
     net = str(Path(given.net).absolute()) if given.net else ""
     if given.own:
-        sys.path.insert(0, os.getcwd())
         found = first_reset(net or "paris_centre") if given.own == "reset" else lean(is_lean=given.own == "lean")
         print(json.dumps(found))
         return

@@ -21,6 +21,7 @@ from automotive_cosim.scenarios.routes import drawn_trips
 from automotive_cosim.traffic.additional import read_mapped
 from automotive_cosim.traffic.file_check import vet
 from automotive_cosim.traffic.georeference import middle
+from automotive_cosim.traffic.keeper import read_once
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import (
     INPUTS,
@@ -80,6 +81,16 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
 def _as_it_is(path: Path, to_be_moved: bool, files: tuple[object, ...]) -> Scenario:
     """As ``foreign_scenario``; kept while its files are as they are, for to read a city takes seconds."""
     configuration = read_configuration(path)
+    if not to_be_moved and configuration.files.keys() == {"net-file"}:
+        # what additional and route files include is not known before they are read
+        return read_once(
+            {path.absolute(), configuration.net.absolute()},
+            lambda: _read(path, configuration, to_be_moved=to_be_moved),
+        )
+    return _read(path, configuration, to_be_moved=to_be_moved)
+
+
+def _read(path: Path, configuration: Configuration, *, to_be_moved: bool) -> Scenario:
     reader = NetworkReader(configuration.net)
     vet(configuration.net, reader, FORM)
     network = reader.network()
