@@ -34,7 +34,7 @@ NO_FORK = "simulations are copied by fork, which needs Linux: on Windows use WSL
 """What a ``SetupError`` says on other systems."""
 FEW = 5
 """Up to this number, all are named rather than one that is only a little similar."""
-LISTED = 40
+LISTED = 45
 """An unknown name is answered with the known ones up to this number."""
 SHOWN = 80
 """Characters of an unknown name that are repeated."""

@@ -29,6 +29,7 @@ from automotive_cosim.interface import spaces
 from automotive_cosim.interface.policy import HOUSE
 from automotive_cosim.models.gguf import KNOWN
 from automotive_cosim.publish.leaderboard import board
+from automotive_cosim.safety.protocol.evidence import protocol
 from automotive_cosim.safety.space import LIBRARY, read_space
 from automotive_cosim.voice import cabin
 from automotive_cosim.voice.table import LEVELS_DB, read, word_errors
@@ -203,6 +204,18 @@ MADE: Mapping[str, Callable[[], str]] = {
         ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE]
     ),
     "scenario": lambda: _fields("scenario"),
+    "protocol": lambda: _table(
+        ("row", "tasks", "drives", "stage on any network", "not shown"),
+        [
+            (
+                row.name,
+                *(", ".join(f"`{name}`" for name in names) for names in (row.tasks, row.drives, row.stages)),
+                row.lacks,
+            )
+            for row in protocol("euroncap-2026").rows
+            if row.part in ("limits", "hazards")
+        ],
+    ),
     "readers": lambda: _table(
         ("file", "read by", "bound"), [(each.what, f"`{each.where}`", each.bound) for each in READERS]
     ),

@@ -106,6 +106,8 @@ class RoadHere:
     """Whether the present limit is one of those."""
     bus_lane: bool = False
     """Whether another lane in this direction is for buses and not for cars."""
+    lane_alone: bool | None = field(default=None, metadata=RARE)
+    """True where a variable sign shows the limit over this lane, and another or none over other lanes."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -82,6 +82,11 @@ def rain(before: Weather) -> Weather:
     return _falls(before, 63, 5.0, 4000.0)
 
 
+def snow(before: Weather) -> Weather:
+    """Snow, at freezing point where it was warmer."""
+    return _falls(replace(before, temperature_2m=min(before.temperature_2m, 0.0)), 73, 1.5, 1500.0)
+
+
 def drizzle(before: Weather) -> Weather:
     """A trace that hardly wets the road; grains of snow in the cold."""
     return _falls(before, 77 if before.temperature_2m <= FREEZING_C else 51, 0.1, 12_000.0)

@@ -27,6 +27,7 @@ from automotive_cosim.drives.sky import (
     rain,
     shower,
     sleet,
+    snow,
 )
 from automotive_cosim.formats.incidents import (
     AheadIncident,
@@ -98,6 +99,8 @@ AHEAD_S = 420.0
 """How long an incident on the road lasts."""
 BEHIND_M = 250.0
 """How far behind an ambulance appears, out of sight."""
+SIGN_M = 500.0
+"""How far ahead a sign is put up: the navigation announces it from there on."""
 AHEAD_M = 1400.0
 """How far ahead it is staged: news that is a minute old is heard in time at 80 km/h."""
 ALIGHT_S, AWAY_S = 10.0, 120.0
@@ -368,6 +371,30 @@ def _leader_stops(setting: Setting) -> Causes:
     return Causes(incidents=(hard,))
 
 
+def _sign(
+    plate: str = "", *, by_lane: bool = False, weather: Callable[[Weather], Weather] | None = None
+) -> Staging:
+    """A driver in a hurry comes to a sign of a lower limit, with a plate or a variable one; as a look-alike, it is
+    on the other carriageway. What it holds in falls as long as it stands."""
+
+    def stage(setting: Setting) -> Causes:
+        until_s = setting.at_s + AHEAD_S
+        sign = AheadIncident(
+            what="sign",
+            from_s=setting.at_s,
+            to_s=until_s,
+            ahead_m=setting.metres(SIGN_M),
+            plate=plate,
+            shows="by lane" if by_lane else "over all lanes",
+            other_way=setting.is_lookalike,
+        )
+        moods = DriverAt(setting.at_s, "hurried"), DriverAt(until_s, setting.driver)
+        falls = () if weather is None else (WeatherSpan(setting.at_s, until_s, weather(setting.weather)),)
+        return Causes(moods=moods, incidents=(sign,), weather=falls)
+
+    return stage
+
+
 STAGINGS: Mapping[str, Staging] = {
     "over_limit": _mood("hurried", "brisk"),
     "leader_close": _leader_close,
@@ -399,13 +426,21 @@ ON_REQUEST: Mapping[str, Staging] = {
     "cut_out": _cut_out,
     "leader_stops": _leader_stops,
     "left_sign": _ahead("left_sign"),
+    "wet_sign": _sign("wet", weather=rain),
+    "snow_sign": _sign("snow", weather=snow),
+    "hours_sign": _sign("06:00-22:00"),
+    "variable_sign": _sign(),
+    "lane_sign": _sign(by_lane=True),
 }
 """What the settings of a drive can stage; families draw from ``STAGINGS`` alone."""
 BRINGS: Mapping[str, tuple[str, ...]] = {
     "cut_in": ("leader_close", "leader_brakes"),
     "cut_out": ("breakdown", "leader_brakes"),
     "leader_stops": ("leader_brakes", "leader_close"),
-    "left_sign": ("limit_falls", "over_limit"),
+    **dict.fromkeys(
+        ("left_sign", "wet_sign", "snow_sign", "hours_sign", "variable_sign", "lane_sign"),
+        ("limit_falls", "over_limit"),
+    ),
 }
 """The kinds of events that those stagings bring about which have no kind's name."""
 SCHOOL_ZONE = "school_zone"

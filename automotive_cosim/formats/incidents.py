@@ -93,6 +93,22 @@ class Roadworks(Incident):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SpeedSign(Incident):
+    """A sign of a lower limit: one with a plate, or a variable one."""
+
+    kind: Literal["sign"] = "sign"
+    edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
+    """The roads on which it holds."""
+    limit_kmh: Annotated[float, Gt(0)]
+    """What it shows."""
+    plate: str = ""
+    """When it holds, in OpenStreetMap's words: ``wet``, ``snow``, ``Mo-Fr 07:00-17:00``; without it, the sign is a
+    variable one."""
+    shows: Literal["over all lanes", "by lane"] = "over all lanes"
+    """Where a variable sign shows it; by lane, over that at the kerb, and 20 km/h more over the others."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Jam(Incident):
     """A queue before a bottleneck at the end of the last edge; its tail is ``length_m`` further back at first."""
 
@@ -379,13 +395,18 @@ class AheadIncident(EgoIncident):
     """An incident on the ego's route some way ahead, wherever that is by then, as far as a road there has room."""
 
     kind: Literal["ahead"] = "ahead"
-    what: Literal["breakdown", "roadworks", "left_sign", "jam", "tractor"]
+    what: Literal["breakdown", "roadworks", "left_sign", "sign", "jam", "tractor"]
     """A car stands with its hazard lights on, on the verge where there is one lane; a lower limit is signed; such a
-    sign still stands after roadworks; a queue; a slow vehicle drives a kilometre along the route."""
+    sign still stands after roadworks; a sign with a plate, or a variable one, for 600 m; a queue; a slow vehicle
+    drives a kilometre along the route."""
     ahead_m: Annotated[float, Gt(0)] = 600.0
     """Distance from the ego along its route."""
     length_m: Annotated[float, Gt(0)] = 100.0
     """Of the queue, at first."""
+    plate: str = ""
+    """Of the sign, as of ``kind = "sign"``."""
+    shows: Literal["over all lanes", "by lane"] = "over all lanes"
+    """Where a sign without a plate shows it."""
     other_way: bool = False
     """Whether it is on the carriageway of the other direction, where it concerns others."""
 
@@ -393,6 +414,7 @@ class AheadIncident(EgoIncident):
 AnyIncident = Annotated[
     Breakdown
     | Roadworks
+    | SpeedSign
     | Jam
     | Closure
     | SchoolZone

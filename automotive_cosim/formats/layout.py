@@ -8,11 +8,14 @@
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
                     road_000.jpg, ...: the view through the windshield after each step;
                     of a drive, if the agent is given it
+    sounds/         step_000_0.wav, ...: what was said by the end of a step, as the microphone had it; with ``--hear
+                    cabin`` or ``audio``, beside a page, if the extra ``voice`` is installed
     road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
 
 ``run`` adds a film and a page, and the whole state to each line of its steps; a pair is a folder with both. In the
 folder of an evaluation (``run.store``), trials whose pictures are kept have theirs in ``pictures/ID``; in that of a
-study, drives that are watched have theirs in ``live/ID``, with neither ``trial.json`` nor screenshots.
+study, drives that are watched, and the equipped cars of every share of one of adoption, have theirs in ``live/ID``,
+with neither ``trial.json`` nor screenshots.
 """
 
 from __future__ import annotations
@@ -25,10 +28,11 @@ STEPS = "steps.jsonl"
 PACKED_STEPS = "steps.jsonl.gz"
 """The same, once a drive is over."""
 SCREENSHOTS = "screenshots"
+SOUNDS = "sounds"
 ROAD = "road.jsonl.gz"
 FILM = "episode.webp"
 PAGE = "summary.html"
-OF_A_TRIAL = (TRIAL, STEPS, PACKED_STEPS, SCREENSHOTS, ROAD, FILM, PAGE)
+OF_A_TRIAL = (TRIAL, STEPS, PACKED_STEPS, SCREENSHOTS, SOUNDS, ROAD, FILM, PAGE)
 
 PAIR = ("with_place", "without_place")
 """The folders of the two runs of ``run --pair``."""
@@ -59,3 +63,8 @@ def road_view(folder: Path, step: int) -> Path:
 def screenshot(folder: Path, step: int) -> Path:
     """Path of the screenshot of a step that changed the screen."""
     return folder / SCREENSHOTS / f"step_{step:03d}.jpg"
+
+
+def sound(folder: Path, step: int, number: int) -> Path:
+    """Path of the sound of the words with that number among those of a step."""
+    return folder / SOUNDS / f"step_{step:03d}_{number}.wav"

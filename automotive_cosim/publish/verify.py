@@ -9,7 +9,7 @@ from __future__ import annotations
 import filecmp
 import json
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from datetime import datetime
@@ -32,7 +32,7 @@ from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, Contents, counts, read_contents
 from automotive_cosim.publish.episodes import check_trial
 from automotive_cosim.publish.problems import ROWS, Problem, differences
-from automotive_cosim.publish.replays import replay
+from automotive_cosim.publish.replays import Replayed, replay
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.hidden import COMMITTED, commitment
 from automotive_cosim.run.moments import judged_file
@@ -55,15 +55,15 @@ STARTS_ON_TRUST = frozenset({"started", "platform", "git", "versions", "own_code
 UNKNOWN = (
     "whether the named agent and model gave these actions: a drive shows what was done, but not by whom",
     "whether these are the first attempts: evaluations with worse results may have been discarded",
-    "thoughts, prompts, answers, token counts, costs and wall times",
+    "whether a model gave the answers on record and how many tokens they had; costs and wall times",
     "when, where and with which versions it ran, and limits that no episode reached",
     "whether infrastructure errors were genuine; each rate counts them as no success, and says how many there were",
 )
 """Facts that no check can establish."""
 UNKNOWN_WITHOUT_REPLAY = (
     "for drives that were not replayed: whether the traffic was SUMO's, the baseline run, the counterfactual, the "
-    "cockpit's answers, and what is measured after the end (speed-limit compliance, time to collision, harm, path, "
-    "violations)"
+    "cockpit's answers, prompts and thoughts, and what is measured after the end (speed-limit compliance, time to "
+    "collision, harm, path, violations)"
 )
 UNKNOWN_WITHOUT_HASHES = "whether files were changed afterwards: a folder has no hashes, but a bundle has"
 
@@ -117,8 +117,8 @@ def verify(
             problems += found
             tell(number, len(names))
         drawn = _sample(read.rows, replays, seed)
-        for name in drawn:
-            problems += _replayed(folder, read.jobs[name], read.rows[name])
+        again = [_replayed(folder, read.jobs[name], read.rows[name]) for name in drawn]
+        problems += [problem for each in again for problem in each.problems]
     judged = sum(row.outcome is not None for row in read.rows.values())
     contents = read.contents
     facts = [
@@ -126,6 +126,7 @@ def verify(
         str(read.coverage),
         f"{counted(judged, 'verdict')} recomputed",
         f"{counted(len(drawn), 'drive')} replayed" + (f", drawn with seed {seed}" if drawn else ""),
+        *_asked(again),
         *(f"  {name}" for name in drawn),
         *read.versions,
     ]
@@ -295,12 +296,24 @@ def _sample(rows: Mapping[str, TrialRow], count: int, seed: int) -> list[str]:
     return [names[number] for number in sorted(drawn)]
 
 
-def _replayed(folder: Path, job: TrialSetup, row: TrialRow) -> list[Problem]:
+def _replayed(folder: Path, job: TrialSetup, row: TrialRow) -> Replayed:
     try:
         with closing(Simulations()) as simulations:
-            return list(replay(folder, job, row, simulations))
+            return replay(folder, job, row, simulations)
     except CosimError as error:
-        return [Problem(f"traces/{row.id}", "", f"cannot be replayed: {error}")]
+        return Replayed((Problem(f"traces/{row.id}", "", f"cannot be replayed: {error}"),), None)
+
+
+def _asked(again: Sequence[Replayed]) -> Iterator[str]:
+    """How many agents put the recorded questions to their models again, and acted on the recorded answers."""
+    same, otherwise = (sum(each.has_asked is so for each in again) for so in (True, False))
+    if same:
+        yield f"  {counted(same, 'drive')} with the recorded questions and answers of a model"
+    if otherwise:
+        yield (
+            f"  {counted(otherwise, 'drive')} by the actions alone: this version asks the model otherwise, so "
+            "prompts and thoughts were not compared"
+        )
 
 
 def _drawn(plan: Plan, key: bytes | None) -> list[str]:

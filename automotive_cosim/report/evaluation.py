@@ -89,7 +89,7 @@ def _side(folder: Path, row: EpisodeRow) -> Side:
         Plot(result.path, result.timeline, 480, 260),
         Plot(result.path, result.timeline, 360, 240),
         tuple(_told(steps)),
-        embedded(read_bytes(screens[-1]), "jpeg") if screens else "",
+        embedded(read_bytes(screens[-1]), "image/jpeg") if screens else "",
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import FILM, PAGE, screenshot
 from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.report.hearing import level_plot, with_sounds
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.attribution import path_of, read_effects
@@ -31,6 +32,8 @@ PARTS: Mapping[str, str] = {
     "in_time": "In time",
     "declared": "Declared",
 }
+SIZES = {"wide": 960, "narrow": 420}
+"""Widths of plots on wide pages and on phones, pixels."""
 PICTURE_WIDTH, PICTURE_QUALITY = 960, 82
 
 
@@ -50,6 +53,9 @@ def write_page(folder: Path) -> Path:
     manifest = told["manifest"]
     film = folder / FILM
     drive = result.path, result.timeline
+    steps = read_steps(folder)
+    said, silent = with_sounds(folder, steps, result.goal)
+    levels = [(step["at_s"], step["cabin_db"]) for step in steps if "cabin_db" in step]
     text = render(
         "report/page.html",
         row=row,
@@ -57,9 +63,12 @@ def write_page(folder: Path) -> Path:
         manifest=manifest,
         parts=PARTS,
         plots={"wide": Plot(*drive, 960, 300), "narrow": Plot(*drive, 420, 280)},
-        steps=_steps(folder),
+        steps=_steps(folder, steps),
+        said=[each | {"wav": each["wav"] and embedded(each["wav"], "audio/wav")} for each in said],
+        silent=silent,
+        levels=levels and [(size, level_plot(levels, said, width, 220)) for size, width in SIZES.items()],
         effects=read_effects(path_of(folder)),
-        film=embedded(read_bytes(film)) if film.is_file() else None,
+        film=embedded(read_bytes(film), "image/webp") if film.is_file() else None,
         versions=sorted(manifest["versions"].items()),
     )
     page = folder / PAGE
@@ -67,7 +76,7 @@ def write_page(folder: Path) -> Path:
     return page
 
 
-def _steps(folder: Path) -> list[Json]:
+def _steps(folder: Path, steps: Sequence[Json]) -> list[Json]:
     """What the page shows of each step."""
     return [
         {
@@ -76,7 +85,7 @@ def _steps(folder: Path) -> list[Json]:
             "action": json.dumps(step["action"], ensure_ascii=False) if step["action"] else "",
             "picture": _picture(screenshot(folder, step["picture"])),
         }
-        for step in read_steps(folder)
+        for step in steps
     ]
 
 
@@ -87,12 +96,12 @@ def _picture(path: Path) -> str:
         small = image.resize((PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
     data = BytesIO()
     small.save(data, format="WEBP", quality=PICTURE_QUALITY)
-    return embedded(data.getvalue())
+    return embedded(data.getvalue(), "image/webp")
 
 
-def embedded(data: bytes, kind: str = "webp") -> str:
-    """A picture as a data URL."""
-    return f"data:image/{kind};base64," + base64.b64encode(data).decode()
+def embedded(data: bytes, kind: str) -> str:
+    """A picture or a sound as a data URL, by its media type."""
+    return f"data:{kind};base64," + base64.b64encode(data).decode()
 
 
 def open_picture(path: Path) -> Image.Image:

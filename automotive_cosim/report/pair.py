@@ -120,7 +120,7 @@ def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
         sides=sides,
         outcomes=[outcome(side.row) for side in sides],
         parts=PARTS,
-        film=embedded(read_bytes(film)) if film.is_file() else None,
+        film=embedded(read_bytes(film), "image/webp") if film.is_file() else None,
         records=[side.folder.relative_to(folder).as_posix() for side in sides],
     )
     write_whole(page, text)

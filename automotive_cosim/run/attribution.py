@@ -38,6 +38,8 @@ REDRAWS, LEAST_REDRAWS = 4, 2
 fewer where it is no more than chance."""
 REDRAWN = 8.0
 """How long redraws and pairs take at most, as a multiple of the trial, so that many acts cost a few times it."""
+PAIRED = 4.0
+"""How much of it is left for acts that may only matter together."""
 TOGETHER_S, MOST_PAIRS = 60.0, 15
 """Two acts that change nothing alone are left out together if they are no farther apart; the nearest first."""
 
@@ -127,11 +129,13 @@ def culprit(effects: Sequence[ActEffect], kinds: Collection[str] = ()) -> str:
 
 def effects(forks: Forks) -> list[ActEffect]:
     """What each act changed, and of those that changed nothing, each pair that did, no act in two of them."""
-    left_s = REDRAWN * (forks.moments[-1].time_s - forks.moments[0].time_s)
-    found, left_s = _redrawn(forks, [[act] for act in forks.acts], left_s)
+    length_s = forks.moments[-1].time_s - forks.moments[0].time_s
+    found, left_s = _redrawn(forks, [[act] for act in forks.acts], REDRAWN * length_s)
     idle = [act for act, effect in zip(forks.acts, found, strict=True) if effect.is_neutral]
-    together = without(forks, [act.step for act in idle], 0) if len(idle) > 1 else None
-    if together is None or (together.is_neutral and not together.chance):
+    if len(idle) < 2:
+        return found
+    (together,), left_s = _redrawn(forks, [idle], min(left_s, PAIRED * length_s))
+    if together.is_neutral:
         return found
     near = [pair for pair in combinations(idle, 2) if pair[1].time_s - pair[0].time_s <= TOGETHER_S]
     near.sort(key=lambda pair: (pair[1].time_s - pair[0].time_s, pair[0].time_s))

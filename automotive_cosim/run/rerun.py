@@ -237,12 +237,22 @@ class Player:
 
     def act(self, observation: Observation) -> Action:
         """The next recorded action."""
+        step = self.turn()
+        if step["action"] is None:
+            raise ActionError(step["feedback"]["text"])
+        return parse(step["action"])
+
+    def turn(self) -> Json:
+        """The next recorded step.
+
+        Raises:
+            AgentError: the agent failed here.
+            OutOfBudgetError: the recording ends here.
+        """
         step = next(self._steps, None)
         if step is None and self._failure is not None:
             raise AgentError(self._failure)
         if step is None:
             raise OutOfBudgetError("the recording ends here")
         self.thought_s = step.get("thought_s", 0.0)
-        if step["action"] is None:
-            raise ActionError(step["feedback"]["text"])
-        return parse(step["action"])
+        return step

@@ -18,6 +18,7 @@ line says ``format`` and what is run; every other line has one of these keys:
                weather    {field of ``contracts.Weather``: value, …}, if it has changed
                incidents  [[kind, x, y], …]
                events     [text, …]
+               (of a fleet, no figures of a single car; events begin with the car that each is about)
     baseline   [[at_s, x, y, heading, speed], …]                          the car in the baseline run, once judged
 
 The file is written during the drive; after a kill, it can be read up to the last complete line. In format 1,

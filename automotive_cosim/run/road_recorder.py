@@ -21,6 +21,7 @@ from automotive_cosim.contracts import (
     GroundArea,
     Json,
     LaneShape,
+    RoadNetwork,
     RoadShapes,
     RoadSnapshot,
     Weather,
@@ -34,9 +35,9 @@ from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.road import FORMAT, SeenColumns
 from automotive_cosim.run.words import limit_kmh
-from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
 
+EVERYWHERE_M = 1e9
 AHEAD_M = 200.0
 """Lanes come into sight this much before they can have a vehicle on them; new ones are sought as often."""
 
@@ -82,7 +83,8 @@ class RoadRecorder(TrialObserver):
         self._session = session
         make_folder(self._path.parent)
         about = self._about | {"goal": session.goal}
-        self._writer = RoadWriter(self._path, session.world.traffic, about, now_s)
+        traffic = session.world.traffic
+        self._writer = RoadWriter(self._path, traffic.shapes(), traffic.network, about, now_s)
         for moment, snapshot in self._before:
             if moment.time_s > departed_s:
                 self._writer.second(moment.driving, RoadFacts.of(moment), snapshot)
@@ -125,11 +127,12 @@ class RoadFacts:
 class RoadWriter:
     """The file, and what has already been written to it."""
 
-    def __init__(self, path: Path, traffic: Traffic, about: Json, begin_s: float) -> None:
+    def __init__(self, path: Path, shapes: RoadShapes, network: RoadNetwork, about: Json, begin_s: float) -> None:
         """Begins the file.
 
         Args:
-            traffic: the drive on the road to be written.
+            shapes: lanes, junctions and ground of the whole network.
+            network: the same for maps.
             about: what is run, by name.
             begin_s: simulation time from which the file counts.
         """
@@ -138,8 +141,8 @@ class RoadWriter:
         self._is_whole = True
         """Whether no line was broken off."""
         self._begin_s = begin_s
-        self._index = _ShapeIndex(traffic.shapes())
-        self._roads = {road.edge_id: road.shape_m for road in traffic.network.roads}
+        self._index = _ShapeIndex(shapes)
+        self._roads = {road.edge_id: road.shape_m for road in network.roads}
         self._lanes: set[int] = set()
         self._junctions: set[int] = set()
         self._ground: set[int] = set()
@@ -155,14 +158,47 @@ class RoadWriter:
                 "format": FORMAT,
                 **about,
                 "radius_m": LOOK_RADIUS_M,
-                "left_hand": traffic.network.left_hand,
-                "has_place": traffic.network.projection is not None,
+                "left_hand": network.left_hand,
+                "has_place": network.projection is not None,
             }
         )
 
     def second(self, driving: DrivingState, around: RoadFacts, snapshot: RoadSnapshot) -> None:
         """Writes one second of the drive, after the lanes and vehicles that are new in it."""
         self._seek(driving.x_m, driving.y_m)
+        lat_deg, lon_deg = driving.lat_deg, driving.lon_deg
+        sky = around.weather
+        weather = None if sky is None else {name: round(value, 1) for name, value in asdict(sky).items()}
+        changed = {} if weather in (None, self._weather) else {"weather": weather}
+        self._weather = weather
+        self._second(
+            snapshot,
+            {
+                "speed_kmh": round(driving.speed_mps * KMH_PER_MPS, 1),
+                "limit_kmh": around.limit_kmh,
+                "speed_unit": around.speed_unit,
+                "road": driving.road.name,
+                "local_time": around.local_time.isoformat(timespec="seconds"),
+                "sun_deg": None
+                if lat_deg is None or lon_deg is None
+                else round(elevation_deg(lat_deg, lon_deg, around.local_time), 1),
+                "weather_code": None if sky is None else sky.weather_code,
+                **changed,
+                "incidents": [
+                    [incident.kind, *(round(part, 1) for part in along(shape, incident.position_m))]
+                    for incident in driving.ahead.incidents
+                    if (shape := self._roads.get(incident.edge_id))
+                ],
+                "events": around.events,
+            },
+        )
+
+    def fleet(self, snapshot: RoadSnapshot, events: Sequence[str]) -> None:
+        """Writes one second of the cars of a network, all of which is in sight."""
+        self._seek(0.0, 0.0, EVERYWHERE_M)
+        self._second(snapshot, {"local_time": "", "sun_deg": None, "incidents": [], "events": events})
+
+    def _second(self, snapshot: RoadSnapshot, facts: Json) -> None:
         new = [each for each in snapshot.vehicles if each.vehicle_id not in self._numbers]
         if new:
             for each in new:
@@ -181,11 +217,6 @@ class RoadWriter:
             if light in self._in_sight and self._lights.get(light) != state
         }
         self._lights |= lights
-        lat_deg, lon_deg = driving.lat_deg, driving.lon_deg
-        sky = around.weather
-        weather = None if sky is None else {name: round(value, 1) for name, value in asdict(sky).items()}
-        changed = {} if weather in (None, self._weather) else {"weather": weather}
-        self._weather = weather
         self._line(
             {
                 "at_s": round(snapshot.time_s - self._begin_s, 2),
@@ -203,22 +234,7 @@ class RoadWriter:
                     ]
                 ),
                 "lights": lights,
-                "speed_kmh": round(driving.speed_mps * KMH_PER_MPS, 1),
-                "limit_kmh": around.limit_kmh,
-                "speed_unit": around.speed_unit,
-                "road": driving.road.name,
-                "local_time": around.local_time.isoformat(timespec="seconds"),
-                "sun_deg": None
-                if lat_deg is None or lon_deg is None
-                else round(elevation_deg(lat_deg, lon_deg, around.local_time), 1),
-                "weather_code": None if sky is None else sky.weather_code,
-                **changed,
-                "incidents": [
-                    [incident.kind, *(round(part, 1) for part in along(shape, incident.position_m))]
-                    for incident in driving.ahead.incidents
-                    if (shape := self._roads.get(incident.edge_id))
-                ],
-                "events": around.events,
+                **facts,
             }
         )
         self._file.flush()
@@ -239,12 +255,12 @@ class RoadWriter:
             self._file.close()
         self._raw.close()
 
-    def _seek(self, x_m: float, y_m: float) -> None:
+    def _seek(self, x_m: float, y_m: float, radius_m: float = LOOK_RADIUS_M + AHEAD_M) -> None:
         """Writes the lanes, junctions and ground that have come into sight."""
         if self._sought_at is not None and math.dist(self._sought_at, (x_m, y_m)) < AHEAD_M:
             return
         self._sought_at = x_m, y_m
-        lanes, junctions, ground = self._index.near(x_m, y_m, LOOK_RADIUS_M + AHEAD_M)
+        lanes, junctions, ground = self._index.near(x_m, y_m, radius_m)
         new = [number for number in lanes if number not in self._lanes]
         outlines = [number for number in junctions if number not in self._junctions]
         areas = [number for number in ground if number not in self._ground]

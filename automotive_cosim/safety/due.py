@@ -113,7 +113,12 @@ class DueScreen:
     def __post_init__(self) -> None:
         """Reads what is known."""
         path = self.folder / DUE
-        self._known = dict(read_json(path)) if path.is_file() else {}
+        try:
+            found = read_json(path) if path.is_file() else {}
+        except ValueError:
+            found = {}
+        if isinstance(found, dict):  # what is not there, or cannot be read, is tried again
+            self._known = {name: why for name, why in found.items() if isinstance(why, str)}
 
     @property
     def screens(self) -> bool:

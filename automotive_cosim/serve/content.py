@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from functools import lru_cache
@@ -14,8 +15,9 @@ from automotive_cosim.drives.followed import told
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED, PictureOf, road_view, screenshot
+from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED, PictureOf, road_view, screenshot, sound
 from automotive_cosim.formats.writing import is_being_written
+from automotive_cosim.report.hearing import can_sound, sounded, utterances
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.run.attribution import path_of, read_effects
 from automotive_cosim.run.coverage import unit_of
@@ -44,6 +46,7 @@ SHOWN = (
 """Fields of a row that the table of results shows."""
 OF_A_STEP = (
     *("at_s", "local_time", "words", "action", "target", "feedback", "thought", "context", "speed_kmh", "picture"),
+    "cabin_db",
 )
 """What a page shows of a step as it is."""
 OWN_ROAD = ("limit_kmh", "speed_kmh", "road")
@@ -107,10 +110,15 @@ class Content:
         entry = self.records.entry(name)
         folder = self.records.trial(entry, episode)
         lines = _steps_in(folder, *_stamp(folder))[skip:]
+        goal = self._head(folder)["goal"] or ""
         return {
             "steps": [
                 {
                     "number": line["step"],
+                    "uttered": [
+                        uttered | {"can_sound": can_sound(folder, line["step"], number)}
+                        for number, uttered in enumerate(utterances(line, goal))
+                    ],
                     "has_picture": _has_picture(self.records, entry, folder, line.get("picture")),
                     "has_view": _has_picture(self.records, entry, folder, line["step"], road_view),
                     **{name: line[name] for name in OF_A_STEP if name in line},
@@ -120,6 +128,22 @@ class Content:
             ],
             "running": _is_running(folder),
         }
+
+    def sound(self, name: str, episode: str | None, step: int, number: int) -> bytes:
+        """Words that were said by the end of a step, as the microphone had them: a WAV file.
+
+        Raises:
+            UserError: nothing was said then, or it cannot be made.
+        """
+        entry = self.records.entry(name)
+        folder = self.records.trial(entry, episode)
+        lines = _steps_in(folder, *_stamp(folder))
+        said = utterances(lines[step], self._head(folder)["goal"] or "") if step < len(lines) else []
+        if number >= len(said):
+            raise NotHereError(f"nothing with number {number} was said by the end of step {step}")
+        if os.path.lexists(path := sound(folder, step, number)):
+            self.records.file(entry, *path.relative_to(entry.folder).parts)
+        return sounded(folder, step, number, said[number])
 
     def road(self, name: str, episode: str | None, skip: int) -> Iterable[Json]:
         """The lines of the recorded road from number ``skip`` on; without a recording, a road with the ego alone.
@@ -232,7 +256,11 @@ class Content:
             planned = manifest.get("episodes")
             told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
             if (study := kind_of(manifest["plan"])) is not None:
-                told |= {"unit": study.unit, "seeds": len(manifest["plan"].get("seeds", ()))}
+                told |= {
+                    "study": manifest["plan"]["study"],
+                    "unit": study.unit,
+                    "seeds": len(manifest["plan"].get("seeds", ())),
+                }
             told["is_search"] = (entry.folder / PAGE).is_file()
             return {**shared, **told}
         return {**shared, "beside": self.records.beside(entry), **self._head(self.records.trial(entry, None))}

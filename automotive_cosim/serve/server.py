@@ -44,6 +44,7 @@ from automotive_cosim.service.own_names import ANY, is_own, own_names
 
 SECURITY = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
+    "media-src 'self'; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -154,6 +155,14 @@ class Site:
                     ),
                 ),
                 (rf"/api/runs/{run}{episode}/(?P<of>pictures|views)/(?P<step>\d{{1,6}})", self._picture),
+                (
+                    rf"/api/runs/{run}{episode}/sounds/(?P<step>\d{{1,6}})/(?P<number>\d{{1,3}})",
+                    lambda path, _: WebAnswer(
+                        content.sound(path["run"], path["episode"], int(path["step"]), int(path["number"])),
+                        "audio/wav",
+                        60,
+                    ),
+                ),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
                 (rf"/api/evaluations/{run}/search\.html", lambda path, _: self._findings(path["run"])),
                 (rf"/api/studies/{run}", lambda path, _: _json(content.study(path["run"], ""))),
@@ -547,10 +556,10 @@ class _RequestHandler(BaseHTTPRequestHandler):
     def _send(self, status: HTTPStatus, answer: WebAnswer) -> None:
         body = answer.body
         self.send_response(status)
-        self.send_header("Content-Type", answer.kind + ("; charset=utf-8" if "image" not in answer.kind else ""))
+        is_text = not answer.kind.startswith(("image/", "audio/"))
+        self.send_header("Content-Type", answer.kind + ("; charset=utf-8" if is_text else ""))
         self.send_header("Cache-Control", f"private, max-age={answer.keep_s}" if answer.keep_s else "no-store")
-        text = not answer.kind.startswith("image/")
-        if text and len(body) > SMALL_BYTES and "gzip" in self.headers.get("Accept-Encoding", ""):
+        if is_text and len(body) > SMALL_BYTES and "gzip" in self.headers.get("Accept-Encoding", ""):
             body = gzip.compress(body, compresslevel=4, mtime=0)
             self.send_header("Content-Encoding", "gzip")
         self._end(body, {"Content-Security-Policy": ALONE} if answer.is_alone else {})

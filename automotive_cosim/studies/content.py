@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError, UserError, install_hint
-from automotive_cosim.formats.writing import drafted
+from automotive_cosim.formats.writing import drafted, write_whole
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
@@ -78,6 +78,10 @@ class ShownStudy:
     tables: Sequence[Table]
     plots: Mapping[str, Chart]
     """By name."""
+    picture: str = ""
+    """HTML below the plots."""
+    pages: Mapping[str, str] = field(default_factory=dict)
+    """Pages beside it, by their file names."""
 
 
 REROUTE = "reroute.results:Study"
@@ -157,6 +161,7 @@ def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:
             warnings=shown.warnings,
             tables=shown.tables,
             plots=shown.plots,
+            picture=shown.picture,
             errors=len(study.errors),
             missing=len(plan.jobs()) - len(study.rows),
             plan=plan.as_json(),
@@ -165,6 +170,8 @@ def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:
         )
         with drafted(folder / "report.html") as file:
             write_files(folder, shown.tables, shown.plots.values())
+            for name, page in shown.pages.items():
+                write_whole(folder / name, page)
             file.write(text.encode())
     except OSError as error:
         raise cannot_write(folder, error) from error

@@ -8,7 +8,7 @@ import typer
 
 from automotive_cosim.cli import RUN
 from automotive_cosim.run.extensions import ResultsKind
-from automotive_cosim.studies.settings import HOME, NETWORKS, RerouteSettings
+from automotive_cosim.studies.settings import HOME, NETWORKS, AdoptionSettings, RerouteSettings
 
 COMMANDS = (("study", f"{HOME}.commands:app", RUN),)
 """As in the command line."""
@@ -23,6 +23,12 @@ def add_commands(groups: Mapping[str, typer.Typer]) -> None:
     groups["scenarios"].command("equilibrate")(equilibrate_scenario)
 
 
+SERVED = {
+    AdoptionSettings.kind: {
+        "": f"{HOME}.adoption.served:shares",
+        "cars": f"{HOME}.adoption.served:cars",
+    }
+}
 KINDS = {
     RerouteSettings.kind: ResultsKind(
         f"{HOME}.reroute.page:write_study",
@@ -30,5 +36,8 @@ KINDS = {
         f"{HOME}.reroute.decisions:attributed",
         {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
     ),
-    **{kind: ResultsKind(f"{HOME}.content:write_report", unit) for kind, (_, _, unit) in NETWORKS.items()},
+    **{
+        kind: ResultsKind(f"{HOME}.content:write_report", unit, served=SERVED.get(kind, {}))
+        for kind, (_, _, unit) in NETWORKS.items()
+    },
 }

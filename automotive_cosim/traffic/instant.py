@@ -78,6 +78,8 @@ class Lane:
     limit: Limit
     friction: float
     limit_hours: str
+    alone: bool | None = None
+    """True where a variable sign shows that limit over this lane, and another or none over other lanes."""
 
 
 Light = tuple[str, str, float]
@@ -164,6 +166,7 @@ class Seen:
                 lane.limit_hours,
                 edge.timed_limit is not None and edge.limit_mps == edge.timed_limit.limit_mps,
                 edge.bus_lane,
+                lane.alone,
             ),
             route.ahead(self.index, self.position_m, self.light and make_light(*self.light)),
             make_around(

@@ -179,7 +179,8 @@ class Sensor:
             source = LimitSource.POSTED if lane_id in edge.signed_lanes else edge.limit_source
             source = LimitSource.VARIABLE if lane_id in edge.variable_lanes else source
             own = Limit(None if has_none else lane_mps, source)
-            return Lane(index, own, friction, edge.limit_hours)
+            alone = source is LimitSource.VARIABLE and len({*edge.lane_mps}) > 1
+            return Lane(index, own, friction, edge.limit_hours, alone or None)
         return Lane(sumo.lane_index(self._ego), edge.limit, friction, edge.limit_hours)
 
     def _look_for_light(self) -> None:

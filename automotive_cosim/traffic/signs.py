@@ -11,12 +11,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
 
-from automotive_cosim.contracts import LimitSource
+from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.traffic.network import DERESTRICTED_MPS, SLOWEST_MPS, Edge, Network
 from automotive_cosim.traffic.posted_limits import TimedLimit, in_force
 from automotive_cosim.traffic.sumo import LibSumo
 
+MORE_MPS = 20 / KMH_PER_MPS
+"""By how much a variable sign that shows a limit for each lane shows more than over the lane at the kerb."""
 BEND_MPS = 0.1
 """A lane across a junction that is slower than its road by more has a speed for a bend."""
 
@@ -95,16 +97,34 @@ class Signs:
         self._over[edge_id].remove(limit_mps)
         self._show(edge_id)
 
-    def put_up_zone(self, edge_ids: Iterable[str], limit: TimedLimit) -> None:
-        """Adds a school zone with its hours, where the limit is not as low anyway."""
+    def light(self, edge_ids: Iterable[str], limit_mps: float | None, *, by_lane: bool) -> None:
+        """Lets a variable sign show a limit, as SUMO's own would, by lane a higher one over all but the lane at the
+        kerb; without a limit it is dark again."""
+        for edge_id in edge_ids:
+            kept = self._keep(edge_id)
+            kept.sumo_mps = kept.built_mps
+            if limit_mps is not None:
+                more = (by_lane * bool(lane) * MORE_MPS for lane in range(len(kept.built_mps)))
+                kept.sumo_mps = tuple(
+                    min(mps, limit_mps + each) for mps, each in zip(kept.built_mps, more, strict=True)
+                )
+            self._write(kept, kept.sumo_mps, is_variable=False)
+            self._show(edge_id)
+
+    def has_variable(self, edge_id: str) -> bool:
+        """Whether SUMO changes the limit there."""
+        return edge_id in self._variable
+
+    def put_up_timed(self, edge_ids: Iterable[str], limit: TimedLimit, *, school: bool) -> None:
+        """Adds a limit with its hours or weather, perhaps of a school zone, where it is not as low anyway."""
         for edge_id in edge_ids:
             edge = self._edges[edge_id]
             if limit.limit_mps is not None and edge.speed_mps > limit.limit_mps:
                 self._keep(edge_id)
-                self._post(edge_id, (*edge.timed_limits, limit), school_zone=True)
+                self._post(edge_id, (*edge.timed_limits, limit), school_zone=school or edge.school_zone)
 
-    def take_down_zone(self, edge_ids: Iterable[str], limit: TimedLimit) -> None:
-        """Removes a school zone."""
+    def take_down_timed(self, edge_ids: Iterable[str], limit: TimedLimit) -> None:
+        """Removes such a limit."""
         for edge_id in edge_ids:
             if edge_id in self._kept and limit in self._edges[edge_id].timed_limits:
                 others = tuple(each for each in self._edges[edge_id].timed_limits if each is not limit)

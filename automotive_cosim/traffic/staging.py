@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from datetime import datetime
+from itertools import takewhile
 from typing import Any
 
 from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
@@ -19,7 +21,7 @@ from automotive_cosim.traffic.manoeuvres import (
     StagedEmergency,
 )
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.posted_limits import Hours, TimedLimit
+from automotive_cosim.traffic.posted_limits import Hours, TimedLimit, timed_limits
 from automotive_cosim.traffic.scripted import StagedVehicle
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident
@@ -39,6 +41,9 @@ SHORTEST_M = 40.0
 
 NEAR_M = 50.0
 """How near its intended place it must be: more than the car drives in a second."""
+
+SIGN_WAY_M = 600.0
+"""On how much of the route a sign holds that was staged ahead of the ego."""
 
 TRACTOR_WAY_M = 1000.0
 """How far a tractor drives that was staged ahead of the ego."""
@@ -110,6 +115,39 @@ class _Roadworks(StagedIncident):
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
         return None if self._incident.over else RoadIncident(IncidentKind.ROADWORKS, self._incident.edge, 0.0)
+
+
+class _Sign(StagedIncident):
+    """A sign with a plate, or a variable one."""
+
+    def __init__(self, stage: IncidentStage, incident: incidents.SpeedSign) -> None:
+        self._stage, self._incident = stage, incident
+        self._by_lane = incident.shows == "by lane"
+        for edge in incident.edges:
+            stage.lane(edge, int(self._by_lane))
+            stage.signs.refuse_if_fixed(edge)
+        self._limits, unread = timed_limits(f"{incident.limit_kmh:g} @ ({incident.plate})" * bool(incident.plate))
+        if unread:
+            raise ScenarioError(
+                f'[[incidents]]: plate = "{incident.plate}" is not understood; write "wet", "snow" or hours, as in '
+                '"Mo-Fr 07:00-17:00"'
+            )
+
+    def begin(self) -> str:
+        signs, incident = self._stage.signs, self._incident
+        for limit in self._limits:
+            signs.put_up_timed(incident.edges, limit, school=False)
+        if not self._limits:
+            signs.light(incident.edges, incident.limit_kmh / KMH_PER_MPS, by_lane=self._by_lane)
+        return ""
+
+    def end(self) -> str:
+        signs, edges = self._stage.signs, self._incident.edges
+        for limit in self._limits:
+            signs.take_down_timed(edges, limit)
+        if not self._limits:
+            signs.light(edges, None, by_lane=self._by_lane)
+        return ""
 
 
 class _Jam(StagedIncident):
@@ -237,11 +275,11 @@ class _SchoolZone(StagedIncident):
         )
 
     def begin(self) -> str:
-        self._stage.signs.put_up_zone(self._edges, self._limit)
+        self._stage.signs.put_up_timed(self._edges, self._limit, school=True)
         return ""
 
     def end(self) -> str:
-        self._stage.signs.take_down_zone(self._edges, self._limit)
+        self._stage.signs.take_down_timed(self._edges, self._limit)
         return ""
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident:
@@ -379,14 +417,31 @@ class _Ahead(StagedIncident):
             return self._jam(way, edges, on_edge_m)
         if on_edge_m > NEAR_M:  # they begin where their road does
             return None
+        limit_kmh = max(20.0, 10.0 * round(0.06 * edges[0].speed_mps * KMH_PER_MPS))
         if incident.what in ("roadworks", "left_sign"):
             if edges[0].cars_mps is not None:
                 return None
-            limit_kmh = max(20.0, 10.0 * round(0.06 * edges[0].speed_mps * KMH_PER_MPS))
             over = incident.what == "left_sign"
             return incidents.Roadworks(edge=way[0], limit_kmh=limit_kmh, over=over, from_s=from_s, to_s=to_s)
+        if incident.what == "sign":
+            signed = self._signed(edges[: _covering(edges, SIGN_WAY_M) or None], limit_kmh)
+            return signed and replace(signed, from_s=from_s, to_s=to_s)
         count = _covering(edges, TRACTOR_WAY_M) or len(way)
         return incidents.Tractor(from_edge=way[0], to_edge=way[count - 1], from_s=from_s, to_s=to_s)
+
+    def _signed(self, edges: Sequence[Edge], limit_kmh: float) -> incidents.SpeedSign | None:
+        """A sign at the beginning of some roads, as far as it is a lower limit there."""
+        incident, by_lane = self._incident, self._incident.shows == "by lane"
+        fit = tuple(
+            edge.edge_id
+            for edge in takewhile(lambda edge: edge.speed_mps * KMH_PER_MPS > limit_kmh, edges)
+            if edge.cars_mps is None
+            and len(edge.lane_ids) > by_lane
+            and not self._stage.signs.has_variable(edge.edge_id)
+        )
+        if edges[0].edge_id not in fit:
+            return None
+        return incidents.SpeedSign(edges=fit, limit_kmh=limit_kmh, plate=incident.plate, shows=incident.shows)
 
     def _jam(self, way: Sequence[str], edges: Sequence[Edge], tail_m: float) -> incidents.Jam | None:
         """A queue whose tail is about there."""
@@ -413,6 +468,7 @@ def _covering(edges: Sequence[Edge], length_m: float) -> int:
 STAGED: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], StagedIncident]] = {
     incidents.Breakdown: _Breakdown,
     incidents.Roadworks: _Roadworks,
+    incidents.SpeedSign: _Sign,
     incidents.Jam: _Jam,
     incidents.Closure: _Closure,
     incidents.SchoolZone: _SchoolZone,

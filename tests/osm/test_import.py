@@ -277,6 +277,9 @@ def test_however_often_it_is_terminated_an_import_leaves_nothing(
     while importing.poll() is None:
         importing.send_signal(signal.SIGTERM)
         time.sleep(0.001)
+    if importing.returncode == 0:  # on a busy machine, it was over before it was told
+        assert [path.name for path in tmp_path.iterdir()] == ["village"]
+        return
     assert importing.returncode in (143, -signal.SIGTERM)  # the same to a shell; the latter as the interpreter ends
     assert list(tmp_path.iterdir()) == []
 

@@ -6,6 +6,7 @@ import lzma
 import random
 import shutil
 from collections.abc import Iterator
+from contextlib import suppress
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache
@@ -342,21 +343,21 @@ def test_what_a_trial_has_only_under_some_conditions_is_checked_and_replayed_too
     assert row.success
     assert {"awareness", "heard", "cabin_db"} <= lines[0].keys()
     assert not check_trial(tmp_path / "e", job, row)
-    assert not list(replay(tmp_path / "e", job, row, simulations))
+    assert not replay(tmp_path / "e", job, row, simulations).problems
     for name in ("awareness", "cabin_db", "heard"):
         write_trace(tmp_path / "e", row.id, changed(lines, (0, name) if name != "heard" else (0, name, 0)))
-        found = [*check_trial(tmp_path / "e", job, row), *replay(tmp_path / "e", job, row, simulations)]
+        found = [*check_trial(tmp_path / "e", job, row), *replay(tmp_path / "e", job, row, simulations).problems]
         assert any(f"step 0 {name}" in problem.field for problem in found), name
 
 
 def test_a_replay_finds_what_nothing_else_can(ran, simulations):
     row = judged(ran)
     job = job_of(ran, row)
-    assert list(replay(ran, job, row, simulations)) == []
+    assert replay(ran, job, row, simulations) == ((), True)
     assert row.speed_compliance is not None
     forged = replace(row, speed_compliance=row.speed_compliance - 0.5)
     assert not check_trial(ran, job, forged)
-    (problem,) = replay(ran, job, forged, simulations)
+    (problem,) = replay(ran, job, forged, simulations).problems
     assert problem.field == f"{row.id} speed_compliance"
 
 
@@ -379,8 +380,12 @@ def test_a_replay_finds_every_field_that_is_left_to_it(folder, simulations):
     }
     assert len(left) >= 6
     for steps in left:
+        if "reply" in steps and steps[-1] != "text":
+            continue  # what a model's answer cost, and why it ended, nobody can know but who asked
         write_trace(folder, row.id, changed(lines, steps))
-        assert list(replay(folder, job, row, simulations)), steps
+        with suppress(UserError):  # which a check tells as a problem
+            again = replay(folder, job, row, simulations)
+            assert again.problems or not again.has_asked, steps
 
 
 @pytest.mark.sumo

@@ -1,11 +1,15 @@
+import json
 import re
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.report import hearing
 from automotive_cosim.report.page import write_page
+from automotive_cosim.voice.engines import as_wav
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 
@@ -112,3 +116,46 @@ def test_a_trial_that_has_not_ended_has_no_page(record):
     (folder / "trial.json").write_text('{"manifest": {"setup": {}}}', encoding="utf-8")
     with pytest.raises(UserError, match="has not ended"):
         write_page(folder)
+
+
+SPOKEN = {0: {"heard": ["Wash my peat."], "cabin_db": 71.5}, 1: {"cabin_db": 64.0}}
+SPOKEN |= {
+    2: {"said": ["Still too fast?", "Slower."], "heard": ["Steel two fast?", "[inaudible]"], "cabin_db": 83.0}
+}
+WAV = as_wav(np.linspace(-1, 1, 1600, dtype=np.float32))
+
+
+def _no_voice(words: str, snr_db: float) -> bytes:
+    raise SetupError("piper is not installed")
+
+
+@pytest.mark.parametrize(
+    ("voice", "kept", "audible", "told"),
+    [
+        (lambda words, snr_db: WAV, WAV, 3, ""),
+        (_no_voice, None, 0, "<code>pip install "),
+        (_no_voice, WAV, 1, "<code>pip install "),
+        (lambda words, snr_db: WAV, b"not a sound", 2, "No sound: step_000_0.wav is no WAV file"),
+    ],
+)
+def test_the_page_plays_what_was_heard_and_says_in_a_line_why_not(record, monkeypatch, voice, kept, audible, told):
+    monkeypatch.setattr(hearing, "sounding", voice)
+    folder = record()
+    assert "In the cabin" not in write_page(folder).read_text(encoding="utf-8")
+    lines = [json.loads(line) for line in (folder / "steps.jsonl").read_text(encoding="utf-8").splitlines()]
+    lines = [line | SPOKEN[line["step"]] for line in lines]
+    (folder / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+    if kept is not None:
+        (folder / "sounds").mkdir()
+        (folder / "sounds" / "step_000_0.wav").write_bytes(kept)
+    tags, text = _tags(page := write_page(folder)), page.read_text(encoding="utf-8")
+    players = [attributes["src"] for tag, attributes in tags.seen if tag == "audio"]
+    assert len(players) == audible
+    assert all(src.startswith("data:audio/wav;base64,") for src in players)
+    for words, reached in zip(("Slower.", "Still too fast?"), ("[inaudible]", "Steel two fast?"), strict=True):
+        assert re.search(f"“{re.escape(words)}”</b> reaches the agent as “{re.escape(reached)}”, in 83 dB", text)
+    assert "In the cabin" in text
+    assert told in text
+    assert ('class="muted note"' in text) == bool(told)
+    before = page.read_bytes()
+    assert write_page(folder).read_bytes() == before

@@ -123,8 +123,7 @@ def test_the_ground_is_told_once_as_it_comes_into_sight_and_read_in_its_drawing_
     around = GroundArea(GroundKind.GREEN, ((-9000.0, 9000.0), (9000.0, 9000.0), (0.0, -9000.0)))
     shapes = RoadShapes((LaneShape("a_0", "road", 3.2, ((0.0, 0.0), (9.0, 0.0))),), (), (near, far, around))
     network = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
-    traffic = SimpleNamespace(shapes=lambda: shapes, network=network)
-    writer = RoadWriter(tmp_path / ROAD, traffic, {}, 0.0)
+    writer = RoadWriter(tmp_path / ROAD, shapes, network, {}, 0.0)
     for x_m in (0.0, 10.0, 800.0, 1600.0):
         writer._seek(x_m, 0.0)
     writer.close()
@@ -135,8 +134,7 @@ def test_the_ground_is_told_once_as_it_comes_into_sight_and_read_in_its_drawing_
 
 def test_a_line_that_was_broken_off_ends_the_record(tmp_path, monkeypatch):
     network = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
-    traffic = SimpleNamespace(shapes=lambda: RoadShapes((), (), ()), network=network)
-    writer = RoadWriter(tmp_path / ROAD, traffic, {}, 0.0)
+    writer = RoadWriter(tmp_path / ROAD, RoadShapes((), (), ()), network, {}, 0.0)
     writer.baseline(())
     writer._file.flush()
     compressed = writer._file.compress

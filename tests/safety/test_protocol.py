@@ -13,8 +13,11 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.contracts import Limit, LimitSource
 from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import EventOutcome, JudgedEvent
+from automotive_cosim.drives.staging import BRINGS, ON_REQUEST
 from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.rows import kind_of
@@ -25,6 +28,8 @@ from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, evidence,
 from automotive_cosim.safety.protocol.page import NO_RATING, write_protocol
 from automotive_cosim.safety.protocol.told import told_on
 from automotive_cosim.tasks import CATALOGUE
+from tests.drives.scenes import found as events_on
+from tests.drives.scenes import limit, stream
 from tests.laws import over
 
 PROTOCOL = protocol("euroncap-2026")
@@ -65,6 +70,39 @@ def test_every_row_is_of_a_part_and_knows_its_events(row):
     assert row.part in PARTS
     assert {each.partition(": ")[0] for each in row.events} <= set(KINDS)
     assert row.tasks or row.events or row.lacks
+
+
+@over(PROTOCOL.rows)
+def test_every_row_is_tried_or_says_why_not(row):
+    kinds = {each.partition(": ")[0] for each in row.events}
+    for stage in (each.partition(",")[0] for each in row.stages):
+        assert stage in ON_REQUEST
+        assert kinds & {*BRINGS.get(stage, (stage,))}, (row.name, stage)
+    assert all(any(fnmatchcase(name, each) for name in FAMILIES) for each in row.drives)
+    assert bool(row.stages) <= bool(row.events)
+    if row.part == "limits":
+        assert bool(row.tasks) == bool(row.stages), "what tasks try can be tried on a network of one's own"
+    assert row.tried_by or row.part == "accuracy" or row.lacks.startswith(("no", "the driver"))
+
+
+PLATE = {"limit": limit(30), "limit_by_clock": True}
+SHOWN = Limit(30 / 3.6, LimitSource.VARIABLE)
+
+
+@pytest.mark.parametrize(
+    ("road", "name"),
+    [
+        (PLATE | {"limit_hours": "30 km/h when wet"}, "Rain / Wetness"),
+        (PLATE | {"limit_hours": "30 km/h in snow"}, "Snow / Icy"),
+        (PLATE | {"limit_hours": "30 km/h Mo-Fr 06:00-22:00"}, "Time / Season"),
+        ({"limit": SHOWN}, "Non-lane relevant"),
+        ({"limit": SHOWN, "lane_alone": True}, "Lane relevant"),
+    ],
+)
+def test_what_a_sign_shows_speaks_for_its_row_alone(road, name):
+    (event,) = events_on(stream(12, kmh=50, **road), "over_limit")
+    told = f"over_limit: {event.words}"
+    assert {row.name for row in PROTOCOL.rows if any(fnmatchcase(told, each) for each in row.events)} == {name}
 
 
 def test_no_row_stands_twice_and_points_are_shared_only_where_the_calculator_shares_them():

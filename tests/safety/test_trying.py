@@ -16,6 +16,7 @@ from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.staging import BRINGS
 from automotive_cosim.drives.watchers import Silent
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.layout import DUE
 from automotive_cosim.report.results import read_results
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -138,6 +139,9 @@ def test_what_cannot_come_about_is_said_before_with_how_to_mend_it(
     again = due.DueScreen(space, asked, simulations, tmp_path)
     assert list(again.check()) == [line, told]
     assert again.tried == 0, "what was tried is kept"
+    for damage in ("{", "[1]", '{"a": 1}'):
+        (tmp_path / DUE).write_text(damage)
+        assert due.DueScreen(space, asked, simulations, tmp_path).tried == 0, "what cannot be read is tried again"
     with trying(space, asked, tmp_path, lambda job, folder: pytest.fail("nothing is run")):
         pass  # the search itself goes on in that folder
     with pytest.raises(UserError, match="nothing comes due in this space"):

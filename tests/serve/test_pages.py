@@ -10,6 +10,7 @@ from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from automotive_cosim.contracts.given import GeoInput
@@ -20,6 +21,7 @@ from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.server import WebServer
 from automotive_cosim.tasking.task import Basis
 from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.voice.engines import as_wav
 
 from .conftest import HOSTILE, Browser, road, step, write_record
 
@@ -61,6 +63,43 @@ def test_a_running_record_is_read_from_where_the_reader_was(serving: Serving, tm
     raw.close()
     assert not is_being_written(run / "road.jsonl.gz")
     assert browser(f"{base}/steps?skip=3").json == {"steps": [], "running": False}
+
+
+def test_what_was_heard_is_told_and_played(serving: Serving, tmp_path: Path) -> None:
+    run = write_record(tmp_path / "run", steps=2)
+    lines = [json.loads(line) for line in (run / "steps.jsonl").read_text(encoding="utf-8").splitlines()]
+    lines[0] |= {"heard": ["Wash my peat."], "cabin_db": 71.5}
+    (run / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+    sounds, outside = run / "sounds", tmp_path / "outside.wav"
+    sounds.mkdir()
+    wav = as_wav(np.zeros(1600, np.float32))
+    outside.write_bytes(wav)
+    browser = serving(run)
+    (record,) = browser("/api/runs").json["records"]
+    base = f"/api/runs/{record['id']}"
+    first = sounds / "step_000_0.wav"
+    for content, status, says in (
+        (wav, 200, ""),
+        (b"not a sound", 422, "step_000_0.wav is no WAV file"),
+        (outside, 404, ""),
+    ):
+        first.unlink(missing_ok=True)
+        if isinstance(content, bytes):
+            first.write_bytes(content)
+        else:
+            first.symlink_to(content)
+        reply = browser(f"{base}/sounds/0/0")
+        assert reply.status == status
+        if status == 200:
+            assert (reply.body, reply.headers["Content-Type"]) == (wav, "audio/wav")
+        else:
+            assert says in reply.json["error"]
+    one, other = browser(f"{base}/steps").json["steps"]
+    heard = {"said": "Watch my speed.", "heard": "Wash my peat.", "noise_db": 71.5, "can_sound": True}
+    assert one["uttered"] == [heard]
+    assert other["uttered"] == []
+    for nothing in ("0/1", "1/0", "9/0"):
+        assert browser(f"{base}/sounds/{nothing}").status == 404
 
 
 def test_the_list_tells_runs_of_a_pair_apart(serving: Serving, tmp_path: Path) -> None:

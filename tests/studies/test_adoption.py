@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
@@ -13,6 +14,9 @@ import pytest
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, SlowDown
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.run.executor import tried
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.store import FORMAT
+from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.studies.adoption import adoption
 from automotive_cosim.studies.adoption.adoption import (
     AdoptionPlan,
@@ -23,7 +27,9 @@ from automotive_cosim.studies.adoption.adoption import (
     ShareOutcome,
     run_seed,
 )
-from automotive_cosim.studies.adoption.page import answer, charts, effects, gone, warnings
+from automotive_cosim.studies.adoption.fleets import fleet_id, read_fleet
+from automotive_cosim.studies.adoption.page import answer, charts, effects, fleets, gone, warnings
+from automotive_cosim.studies.adoption.served import cars, shares
 from automotive_cosim.studies.calls import town
 from automotive_cosim.studies.calls.town import CarTrip
 from automotive_cosim.studies.plan import plan_of
@@ -77,10 +83,15 @@ def test_herding_is_what_is_gone_of_the_first_gain() -> None:
 
 def test_warnings_of_one_kind_on_one_road_within_a_minute_are_of_one_hazard() -> None:
     said = ShareLog(
-        warned=[("traffic", "a", 0.0), ("traffic", "a", 59.0), ("traffic", "b", 1.0), ("slippery", "a", 2.0)]
+        warned=[
+            ("traffic", "a", 0.0, "1"),
+            ("traffic", "a", 59.0, "2"),
+            ("traffic", "b", 1.0, "1"),
+            ("slippery", "a", 2.0, "1"),
+        ]
     )
     assert said.hazards == 3
-    said.warned.append(("traffic", "a", 119.0))
+    said.warned.append(("traffic", "a", 119.0, "3"))
     assert said.hazards == 4
 
 
@@ -150,6 +161,14 @@ def test_a_study_of_an_agent(agent: str, sumo: None, tmp_path: Path) -> None:
     assert (none.share, half.share, full.share) == (0.0, 0.5, 1.0)
     assert none.equipped is None
     assert full.others is None
+    assert not none.cars
+    for share in (half, full):
+        drove = read_fleet(tmp_path, fleet_id(1, share.share))
+        assert drove is not None
+        assert {each.car for each in share.cars} >= drove.ways.keys() > set()
+        assert share.reroutes == sum(each.reroutes for each in share.cars)
+        assert share.warnings == sum(each.warnings for each in share.cars)
+    assert {each.car for each in half.cars} < {each.car for each in full.cars}
     assert half.equipped
     assert half.others
     assert none.all.time_s == none.all.before_s
@@ -177,7 +196,7 @@ class Odd:
             case 0:
                 raise ValueError("a fault of one car")
             case 1:
-                return "left, I think"
+                return "left, I think" if len(car) % 2 else SlowDown(float("nan"))
             case 2 if len(self.asked) < 20:
                 self.slow.wait(30)
                 return None
@@ -187,21 +206,40 @@ class Odd:
                 return Reroute(edges=ways()[-1].edges)
 
 
-def test_an_assistants_errors_are_those_of_one_car(sumo: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_assistants_errors_are_those_of_one_car(
+    sumo: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setattr(adoption, "HANGS_S", 0.05)
     job = replace(PLAN, agent="never", seeds=(1,), minutes=1.0, every_s=20.0).jobs()[0]
     with closing(adoption.warmed_up(job)) as warm:
         odd = Odd(1)
-        said, trips = adoption.drive(job, warm, 1.0, odd)  # type: ignore[arg-type]
+        said, trips = adoption.drive(job, warm, 1.0, odd, keeps=tmp_path)  # type: ignore[arg-type]
         silent, before = adoption.drive(job, warm, 0.0)
     kinds = {car: sum(map(ord, car)) % 6 for car in odd.asked}
     late = [car for car in list(odd.asked)[:19] if kinds[car] == 2]
-    assert said.failed == sum(kind < 2 for kind in kinds.values()) + len(late) > len(late) > 0
+    assert len(said.errors) == sum(kind < 2 for kind in kinds.values()) + len(late) > len(late) > 0
     assert all(odd.asked[car] == 1 for car, kind in kinds.items() if kind < 2)
     assert max(odd.asked.values()) > 1
-    assert said.reroutes > 0 == silent.failed
+    assert said.rerouted.total() > 0 == len(silent.errors)
     assert trips.keys() == before.keys() > {car for car, kind in kinds.items() if kind < 2}
     assert trips != before
+    row = AdoptionRow(
+        id="seed1", scenario="grid", seed=1, shares=(adoption._outcome(job, 1.0, said, trips, before),)
+    )
+    assert {each.car for each in row.shares[0].cars if each.error} == said.errors.keys()
+    picture, pages = fleets(AdoptionStudy(tmp_path, {}, replace(PLAN, seeds=(1,)), (row,)))
+    (page,) = pages.values()
+    assert page.count('<span class="no">failed</span>') == len(said.errors)
+    assert page.count('class="card one"') == len(row.shares[0].cars)
+    assert 'class="way failed"' in picture
+    assert 'href="cars-seed1-100.html#car-1"' in picture
+    plan = {"format": FORMAT, "plan": replace(PLAN, seeds=(1,)).as_json()}
+    (tmp_path / "manifest.json").write_text(json.dumps(plan))
+    (tmp_path / "episodes.jsonl").write_text(json.dumps(as_json(row)) + "\n")
+    assert shares(tmp_path)["fleets"] == [{"id": "seed1-100", "running": False}]
+    assert len(cars(tmp_path, "seed1-100")["cars"]) == len(row.shares[0].cars)
+    with pytest.raises(NotHereError, match="seed9"):
+        cars(tmp_path, "seed9-100")
 
 
 def test_a_class_of_ones_own_advises_by_name(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -130,6 +130,32 @@ def test_a_sign_that_is_left_after_roadworks_holds_and_is_not_reported(staged: S
 
 
 @pytest.mark.sumo
+@pytest.mark.parametrize(
+    ("sign", "kmh", "source", "alone"),
+    [
+        ('plate = "Mo-Fr 08:00-09:00"', {30}, "posted", None),
+        ('plate = "Sa,Su 08:00-09:00"', {50}, "posted", None),
+        ('plate = "wet"', {50}, "posted", None),
+        ("", {30}, "variable", None),
+        ('shows = "by lane"', {30, 50}, "variable", True),
+        ("to_s = -2.0", {50}, "posted", None),
+        ('plate = "Mo-Fr 08:00-09:00"\nto_s = -2.0', {50}, "posted", None),
+    ],
+)
+def test_a_sign_holds_as_its_plate_says_and_a_variable_one_over_its_lanes(
+    staged: Staged, average: EgoPlan, sign: str, kmh: set[int], source: str, alone: bool | None
+) -> None:
+    put_up = f'kind = "sign"\nedges = ["c2c3"]\nlimit_kmh = 30\n{sign}'
+    drive = driven(staged(f"{put_up}\nfrom_s = -5.0"), average)
+    roads = [state.road for state in drive.states if state.road.edge_id == "c2c3"]
+    assert roads
+    assert {round((road.limit.mps or 0) * KMH_PER_MPS) for road in roads} <= kmh
+    low = [road for road in roads if round((road.limit.mps or 0) * KMH_PER_MPS) == 30]
+    assert bool(low) or 50 in kmh
+    assert {(road.limit.source, road.lane_alone) for road in low} <= {(source, alone)}
+
+
+@pytest.mark.sumo
 def test_a_jam_stands_beyond_a_bend(staged: Staged, average: EgoPlan) -> None:
     """Its tail is in the street that the ego turns into; the queue moves up, and the ego gets through."""
     jam = staged(
@@ -457,6 +483,8 @@ def test_what_makes_no_sense_is_refused_when_read(staged: Staged, incident: str,
         ('kind = "breakdown"\nedge = "c1c2"\nposition_m = 900.0', "is 1.. m long"),
         ('kind = "breakdown"\nedge = "c1c2"\nposition_m = 90.0\nlane = 2', "has 2 lanes"),
         ('kind = "roadworks"\nedge = "n1n2"\nlimit_kmh = 20\nclosed_lanes = [0]', "leave no lane"),
+        ('kind = "sign"\nedges = ["n1n2"]\nlimit_kmh = 20\nshows = "by lane"', "has 1 lanes"),
+        ('kind = "sign"\nedges = ["c1c2"]\nlimit_kmh = 20\nplate = "at dawn"', "is not understood; write"),
         ('kind = "jam"\nedges = ["c1c2", "n1n2"]\nlength_m = 20.0', "no route leads"),
         ('kind = "jam"\nedges = ["c1c2"]\nlength_m = 2000.0', "does not fit"),
         ('kind = "pedestrians"\nfrom_edge = "c1c2"\nto_edge = "c2c3"', "sidewalks"),

@@ -18,6 +18,7 @@ from automotive_cosim.drives.events.law import (
     time_left_s,
 )
 from automotive_cosim.drives.margins import hold_s, margin_kmh
+from automotive_cosim.geo.binding import SIGN
 from automotive_cosim.geo.weather import phenomena
 
 FOG_M = 1000.0
@@ -75,6 +76,9 @@ class OverLimit(SpeedKind):
         if limit is None or kmh < SLOW_KMH or is_school_time(now) or is_reduced(now.context, limit):
             return
         why = f" {limit.text}" if limit.limit.source in (LimitSource.LAW, LimitSource.VARIABLE) else ""
+        road = now.driving.road
+        why = " posted over this lane" if road.lane_alone else why
+        why += f", by a plate: {road.limit_hours}" if road.limit_by_clock and limit.rule == SIGN else ""
         yield from _over(kmh, limit.kmh, f"{kmh:.0f} km/h where {limit.kmh:.0f} apply{why}")
 
     def against(self, drive: Sequence[Moment]) -> str | None:

@@ -41,6 +41,10 @@ class ProtocolRow:
     """Globs of ids."""
     events: tuple[str, ...] = ()
     """Globs of ``kind: words`` of the events of drives."""
+    drives: tuple[str, ...] = ()
+    """Globs of families whose drives have such events."""
+    stages: tuple[str, ...] = ()
+    """What ``stage`` of a drive brings them about on any network, with a trailer where it says so."""
     lacks: str = ""
     """What no trial shows."""
 
@@ -48,6 +52,12 @@ class ProtocolRow:
     def points_of(self) -> str:
         """The calculator's name for what has the points."""
         return self.scored or (f"{self.name} - Receiving & informing" if self.part == "hazards" else self.name)
+
+    @property
+    def tried_by(self) -> str:
+        """What tries it, in words; empty if nothing does."""
+        named = (("tasks", self.tasks), ("drives", self.drives), ("stage", self.stages))
+        return "; ".join(f"{kind} {', '.join(names)}" for kind, names in named if names)
 
 
 @dataclass(frozen=True, slots=True)

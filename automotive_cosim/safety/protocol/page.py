@@ -100,7 +100,8 @@ def _part(part: str, found: Sequence[Evidence], scores: tuple[Scores, Scores]) -
     for each in mine:
         count, ok = len(each.trials), each.succeeded
         countries = (f"{name or '?'} {one.succeeded}/{len(one.trials)}" for name, one in each.by_country.items())
-        lacks = each.row.lacks if count else f"not tried: {each.row.lacks}".removesuffix(": ")
+        tried_by = f" ({each.row.tried_by})" if each.row.tried_by else ""
+        lacks = each.row.lacks if count else f"not tried{tried_by}: {each.row.lacks}".removesuffix(": ")
         told = _points([each.row.points_of], scores) or "not scored"
         if each.row.scored and sharing[each.row.scored] > 1:
             told += f" for {sharing[each.row.scored]} rows"

@@ -6,6 +6,7 @@ import { livePage } from "./live.js";
 import { replayPage } from "./replay.js";
 import { playPage } from "./play.js";
 import { besidePage, comparePage } from "./compare.js";
+import { fleetPage } from "./fleet.js";
 import { decisionPage, decisionsPage } from "./decisions.js";
 import { studyPage } from "./study.js";
 import { scenariosPage, taskPage, tasksPage } from "./browse.js";
@@ -21,6 +22,7 @@ const PAGES = [
   [/^\/study$/, studyPage],
   [/^\/live\/([0-9a-f]{12})$/, livePage],
   [/^\/decisions\/([0-9a-f]{12})$/, decisionsPage],
+  [/^\/fleet\/([0-9a-f]{12})(?:\/([^/]+))?(?:\/([^/]+))?$/, fleetPage],
   [/^\/decision\/([0-9a-f]{12})\/([^/]+)$/, decisionPage],
   [/^\/compare\/([0-9a-f]{12})\/([0-9a-f]{12})$/, comparePage],
   [/^\/beside\/([0-9a-f]{12})\/([^/]+)\/([0-9a-f]{12})\/([^/]+)$/, besidePage],

@@ -2,7 +2,7 @@
 
 import { ask, counted, h, modelName, outcome, plain, seconds, speedInWords } from "./dom.js";
 import { RoadRecord, RoadView, signals } from "./road.js";
-import { speedPlot } from "./plot.js";
+import { levelPlot, speedPlot } from "./plot.js";
 
 const POLL_MS = 1000;
 const WEATHER = [[0, "clear"], [3, "cloudy"], [48, "fog"], [57, "drizzle"], [67, "rain"], [77, "snow"], [82, "showers"], [86, "snow showers"], [99, "thunderstorm"]]; // up to each WMO code
@@ -43,6 +43,7 @@ export async function replayPage(query, id, episode) {
   const vehicle = h("div", { class: "card vehicle", hidden: true });
   const verdict = h("section", {});
   const plot = h("div", { class: "card" });
+  const level = h("div", {});
   const heading = h("div", { class: "head" });
   const note = h("p", { class: "warning", hidden: true, role: "status" });
 
@@ -98,6 +99,8 @@ export async function replayPage(query, id, episode) {
     const path = run.path.length ? run.path : road.seconds;
     plot.replaceChildren(speedPlot(path, jump));
     plot.hidden = path.length < 2;
+    const levels = steps.filter((each) => each.cabin_db !== undefined);
+    level.replaceChildren(...(levels.length ? [h("h2", {}, "Level in the cabin"), h("div", { class: "card" }, levelPlot(levels, jump))] : []));
     shownStep = null;
   }
 
@@ -117,6 +120,7 @@ export async function replayPage(query, id, episode) {
       canvas.setAttribute("aria-label", `The road from above. ${about.textContent}`);
     }
     plot.firstElementChild?.mark?.(at);
+    level.querySelector("svg")?.mark(at);
     showVehicle();
     const index = step();
     if (index !== shownStep) showStep(index);
@@ -173,12 +177,18 @@ export async function replayPage(query, id, episode) {
     return [
       h("h3", {}, now.number ? `${run.of_study ? "" : `Step ${now.number}: `}${now.words}` : run.kind === "drive" ? "Departure" : "Hand-over"),
       now.thought && h("p", { class: "thought" }, now.thought),
+      now.uttered.map((each, index) => uttered(each, `${base}/sounds/${now.number}/${index}`)),
       now.feedback.text && h("p", { class: "muted" }, `${plain(now.feedback.code)}: ${now.feedback.text}`),
       now.action && h("p", {}, h("code", {}, JSON.stringify(now.action))),
       now.stages.map((stage) => h("details", { open: stage.text.length < 600 },
         h("summary", {}, plain(stage.name), stage.tokens_in ? ` · ${stage.tokens_in} + ${stage.tokens_out} tokens${stage.seconds ? `, ${stage.seconds.toFixed(1)} s` : ""}` : ""), h("pre", {}, stage.text))),
       now.context && h("details", {}, h("summary", {}, "geo-context"), h("pre", {}, now.context)),
     ].flat().filter(Boolean);
+  }
+
+  function uttered(each, address) {
+    return h("div", { class: "uttered" }, h("p", {}, h("b", {}, `“${each.said}”`), ` reaches the agent as “${each.heard}”, in ${Math.round(each.noise_db)} dB(A)`),
+      each.can_sound ? h("audio", { controls: true, preload: "none", src: address, "aria-label": "What was said, in the cabin" }) : h("p", { class: "muted" }, "The extra `voice` makes it sound here."));
   }
 
   function jump(to, keep = false) {
@@ -282,7 +292,7 @@ export async function replayPage(query, id, episode) {
       verdict,
       h("div", { class: "columns even" },
         run.of_study ? null : h("section", {}, h("h2", {}, "Events"), h("div", { class: "card" }, events)),
-        h("section", {}, h("h2", {}, "Speed and limit"), plot)),
+        h("section", {}, h("h2", {}, "Speed and limit"), plot, level)),
       h("p", { class: "muted hash" }, run.trace_sha256 ? `Trace ${run.trace_sha256}` : "")],
     ready: () => {
       jump(query.has("at") && Number.isFinite(Number(query.get("at"))) ? Number(query.get("at")) : running ? (following ? end() : road.begin) : 0, true);

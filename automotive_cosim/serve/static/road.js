@@ -468,7 +468,7 @@ export class RoadView {
 
   vehicle(context, vehicle, colours) {
     const isEgo = vehicle.id === "ego";
-    const least = (isEgo ? 1.7 : 1) * LEAST_PX * this.pixel;
+    const least = (isEgo || this.failed ? 1.7 : 1) * LEAST_PX * this.pixel;
     const [long, wide] = [Math.max(vehicle.length, least), Math.max(vehicle.width, least * 0.45)];
     const angle = vehicle.heading * Math.PI / 180;
     const [east, north] = [Math.sin(angle), Math.cos(angle)];
@@ -486,7 +486,7 @@ export class RoadView {
     };
     context.fillStyle = isEgo ? "#fff" : this.follows === vehicle.id ? "#ffb42e" : colours.edge;
     outline((isEgo || this.follows === vehicle.id ? 2 : 1) * this.pixel);
-    context.fillStyle = isEgo ? "#1f78e6" : HEAVY.has(vehicle.kind) ? colours.heavy : colours.car;
+    context.fillStyle = this.failed?.has(vehicle.id) ? "#e5484d" : isEgo || this.failed ? "#1f78e6" : HEAVY.has(vehicle.kind) ? colours.heavy : colours.car;
     if (vehicle.kind === "emergency") context.fillStyle = vehicle.signals & SIGNAL.blue ? "#3c78ff" : "#ebebf0";
     outline(0);
     if (this.pixel > 0.5) return;

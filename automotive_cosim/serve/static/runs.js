@@ -25,12 +25,13 @@ function line(record, records) {
       h("span", { class: "pill bad" }, "Unreadable"));
   }
   if (WHOLE[record.kind]) {
-    const [page, whole, unit = record.unit] = WHOLE[record.kind];
+    const [, whole, unit = record.unit] = WHOLE[record.kind];
+    const page = record.study === "adoption" ? "fleet" : WHOLE[record.kind][0];
     const label = record.is_search ? "Search" : record.seeds ? `${whole} of ${counted(record.seeds, "seed")}` : whole;
     const done = record.planned ? `${record.done} of ${counted(record.planned, unit)}` : counted(record.done, unit);
     return h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/${page}/${record.id}` }, record.name), h("p", { class: "muted" }, `${label} · ${done} · ${when(record.started)}`)),
-      record.running && record.kind === "study" ? h("a", { class: "pill live", href: `#/live/${record.id}` }, "Watch live")
+      record.running && record.kind === "study" ? h("a", { class: "pill live", href: `#/${page === "fleet" ? page : "live"}/${record.id}` }, "Watch live")
         : record.is_search && !record.running ? h("a", { class: "pill quiet", href: findings(record.id) }, "Findings")
         : h("span", { class: record.running ? "pill live" : "pill quiet" }, record.running ? "Running" : "Results"));
   }

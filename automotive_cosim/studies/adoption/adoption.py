@@ -6,7 +6,9 @@ equipped car is driven by SUMO, as it would be anyway, until its assistant asks 
 
 from __future__ import annotations
 
+import math
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -20,6 +22,7 @@ import numpy as np
 
 from automotive_cosim.agents import Agent, AgentSettings, is_remote, make_agent, model_of
 from automotive_cosim.agents.guest import FAULTS, aside, own_class, told
+from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import ActionType, DrivingState, Json, Reroute, RouteOption, SlowDown
 from automotive_cosim.cosim.simulation import couple
@@ -28,12 +31,14 @@ from automotive_cosim.episode.fleet import Fleet
 from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.specification import SCREEN, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, CosimError, OutOfBudgetError, UserError
+from automotive_cosim.formats.layout import LIVE
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import alone
 from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.wording import KINDS, read_line
+from automotive_cosim.studies.adoption.fleets import FAILS, FleetRecord, fleet_id
 from automotive_cosim.studies.calls import town
 from automotive_cosim.studies.calls.town import CarTrip
 from automotive_cosim.studies.content import StudyContent
@@ -142,6 +147,28 @@ class Cohort:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class EquippedCar:
+    """One equipped car of a share."""
+
+    car: str
+    """SUMO's id."""
+    departs_s: float
+    """When it wants to set out, in seconds after the warm-up."""
+    time_s: float
+    """From then to its arrival, or to the end."""
+    arrived: bool
+    before_s: float | None
+    """The same time at share 0; None if it does not set out there."""
+    lost_s: float
+    """SUMO's ``timeLoss``."""
+    driven_m: float
+    reroutes: int
+    warnings: int
+    error: str = ""
+    """Why it lost its assistant; empty if it did not."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ShareOutcome:
     """What a share comes to."""
 
@@ -157,6 +184,8 @@ class ShareOutcome:
     """How many different ones the warnings are of (``SAME_HAZARD_S``)."""
     failed: int
     """Cars whose agent failed; they drove on without it."""
+    cars: tuple[EquippedCar, ...] = ()
+    """Each that was equipped, as it set out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,29 +201,31 @@ class AdoptionRow(JobRow):
 class ShareLog:
     """What the assistants of a share have done."""
 
-    reroutes: int = 0
-    warned: list[tuple[str, str, float]] = field(default_factory=list)
-    """Kind of the alert, edge and time."""
-    failed: int = 0
+    rerouted: Counter[str] = field(default_factory=Counter)
+    """How many routes of each car were changed on an assistant's advice."""
+    warned: list[tuple[str, str, float, str]] = field(default_factory=list)
+    """Kind of the alert, edge, time and car."""
+    errors: dict[str, str] = field(default_factory=dict)
+    """By car, why it lost its assistant."""
 
     @property
     def hazards(self) -> int:
         last_s: dict[tuple[str, str], float] = {}
         count = 0
-        for kind, edge, at_s in sorted(self.warned, key=lambda each: each[2]):
+        for kind, edge, at_s, _ in sorted(self.warned, key=lambda each: each[2]):
             count += at_s - last_s.get((kind, edge), -SAME_HAZARD_S) >= SAME_HAZARD_S
             last_s[kind, edge] = at_s
         return count
 
 
 def run_seed(job: AdoptionJob, folder: Path) -> AdoptionRow:
-    """Runs all shares of a seed; nothing but its row is kept."""
+    """Runs all shares of a seed; its row is kept, and where the equipped cars of each share drove."""
     shares = dict.fromkeys((0.0, *(percent / 100 for percent in job.plan.shares)))
     driven = {}
     with closing(warmed_up(job)) as warm:
         for number, share in enumerate(shares):
             doing(f"driving with {share:.0%} equipped", share=number / len(shares))
-            driven[share] = drive(job, warm, share)
+            driven[share] = drive(job, warm, share, keeps=folder)
     before = driven[0.0][1]
     return replace(
         job.planned(),
@@ -210,7 +241,12 @@ def warmed_up(job: AdoptionJob) -> Forked:
 
 
 def drive(
-    job: AdoptionJob, warm: Forked, share: float, assistant: Assistant | None = None
+    job: AdoptionJob,
+    warm: Forked,
+    share: float,
+    assistant: Assistant | None = None,
+    *,
+    keeps: Path | None = None,
 ) -> tuple[ShareLog, Mapping[str, CarTrip]]:
     """Drives a share: what its assistants did, and every car's trip by its id.
 
@@ -219,9 +255,14 @@ def drive(
         warm: what ``warmed_up`` gave.
         share: 0 to 1.
         assistant: that of the plan if left out.
+        keeps: the study's folder, to which the drives of equipped cars are written while they last.
     """
     with closing(warm.road()) as road:
-        return _Drive(job, road, assistant).go(share), road.call(town.trips_of)
+        if not (keeps and share):
+            return _Drive(job, road, assistant).go(share), road.call(town.trips_of)
+        about = {"scenario": job.plan.scenario, "agent": job.plan.agent, "seed": job.seed, "share": share}
+        with closing(FleetRecord(keeps, fleet_id(job.seed, share), road, about)) as record:
+            return _Drive(job, road, assistant, record).go(share), road.call(town.trips_of)
 
 
 def own_assistant(agent: str, seed: int) -> Assistant | None:
@@ -272,7 +313,10 @@ def within(seconds: float, call: Callable[[], T]) -> T:
 class _Drive:
     """One share: its equipped cars, each with an assistant."""
 
-    def __init__(self, job: AdoptionJob, road: RemoteRoad, assistant: Assistant | None) -> None:
+    def __init__(
+        self, job: AdoptionJob, road: RemoteRoad, assistant: Assistant | None, record: FleetRecord | None = None
+    ) -> None:
+        self._record = record
         self._job, self._plan, self._scenario, self._road = job, job.plan, job.plan.scene(), road
         self._policy = job.plan.policy
         self._said = ShareLog()
@@ -291,12 +335,24 @@ class _Drive:
                     fleet.begin(car.car, self._agent(car), partial(_now_s, car))
                 else:
                     fleet.begin(car.car, self._advised(car), lambda: road.time_s)
-            fleet.begin("", self._clock(1.0 if fleet.busy else self._end_s - road.time_s), lambda: road.time_s)
+            for_s = 1.0 if fleet.busy or self._record else self._end_s - road.time_s
+            fleet.begin("", self._clock(for_s), lambda: road.time_s)
             while "" in fleet.busy:
                 for name in fleet.run():
                     if name and name not in fleet.busy:
                         road.leave(name)
+            if self._record:
+                self._record.look()
         return self._said
+
+    def _note(self, car: str, words: str) -> None:
+        if self._record:
+            self._record.note(f"{car}: {words}")
+
+    def _fails(self, car: str, error: CosimError) -> None:
+        """A car loses its assistant."""
+        self._said.errors[car] = str(error)
+        self._note(car, f"{FAILS} {error}")
 
     def _clock(self, for_s: float) -> TakesTime[None]:
         """So long of the road, whoever drives in it; until a car gets a cockpit if no other has one."""
@@ -340,12 +396,14 @@ class _Drive:
                 return
             try:
                 request = self._advice(car)
-            except UserError:
-                self._said.failed += 1
+            except UserError as error:
+                self._fails(name, error)
                 return
-            if request is not None and rng.random() < follows:
-                is_done = car.request(request).accepted
-                self._said.reroutes += is_done and isinstance(request, Reroute)
+            if request is not None:
+                is_done = rng.random() < follows and car.request(request).accepted
+                self._said.rerouted[name] += is_done and isinstance(request, Reroute)
+                asked = "another way" if isinstance(request, Reroute) else f"{request.speed_kmh:g} km/h at most"
+                self._note(name, f"{asked}, which the driver {'takes' if is_done else 'does not take'}")
                 is_steered = is_steered or isinstance(request, SlowDown)
 
     def _advice(self, car: RemoteTraffic) -> Reroute | SlowDown | None:
@@ -369,7 +427,9 @@ class _Drive:
             if request is None or isinstance(request, Reroute):
                 return request
             if isinstance(request, SlowDown) and isinstance(request.speed_kmh, int | float):
-                return request
+                if 0 <= request.speed_kmh < math.inf:
+                    return request
+                raise UserError(f"advise returned a SlowDown to {request.speed_kmh} km/h; it has to be 0 or more")
             raise UserError(f"advise returned {request!r}; it has to return a Reroute, a SlowDown or None")
         known = car.alternatives()
         if len(known) < 2:
@@ -385,8 +445,8 @@ class _Drive:
             agent = within(HANGS_S, lambda: make_agent(*named(self._policy.agent), settings, self._model))
             session = self._session(car, agent)
             within(HANGS_S, lambda: agent.reset(session.goal))
-        except UserError:
-            self._said.failed += 1
+        except UserError as error:
+            self._fails(car.car, error)
             return
         before = car.state.ahead.route_edges
         while session.end is None:
@@ -395,14 +455,16 @@ class _Drive:
             except ActionError as error:
                 yield from session.refusing(str(error))
                 continue
-            except (AgentError, OutOfBudgetError, UserError):
-                self._said.failed += 1
+            except (AgentError, OutOfBudgetError, UserError) as error:
+                self._fails(car.car, error)
                 return
             if action.action_type is ActionType.SHOW_ALERT:
-                self._said.warned.append((str(action.kind), car.state.road.edge_id, car.state.time_s))
+                self._said.warned.append((str(action.kind), car.state.road.edge_id, car.state.time_s, car.car))
+            if action.action_type is not ActionType.WAIT:
+                self._note(car.car, action_in_words(action, session.observation.elements or ()))
             yield from session.stepping(action)
             now = car.state.ahead.route_edges
-            self._said.reroutes += bool(now) and now != before[len(before) - len(now) :]
+            self._said.rerouted[car.car] += bool(now) and now != before[len(before) - len(now) :]
             before = now or before
 
     def _session(self, car: RemoteTraffic, agent: Agent) -> DriveSession:
@@ -438,10 +500,37 @@ def _outcome(
         equipped=_cohort(equipped, trips, before),
         others=_cohort(others, trips, before),
         all=_mean(both, trips, before),
-        reroutes=said.reroutes,
+        reroutes=said.rerouted.total(),
         warnings=len(said.warned),
         hazards=said.hazards,
-        failed=said.failed,
+        failed=len(said.errors),
+        cars=tuple(_cars(job, share, said, trips, before)),
+    )
+
+
+def _cars(
+    job: AdoptionJob, share: float, said: ShareLog, trips: Mapping[str, CarTrip], before: Mapping[str, CarTrip]
+) -> Iterator[EquippedCar]:
+    begun_s, warned = job.plan.scene().sumo.warm_up_s, Counter(car for *_, car in said.warned)
+    for car, trip in sorted(trips.items(), key=lambda each: (each[1].planned_s, each[0])):
+        if town.drawn(job.seed, car) < share:
+            yield _car(car, trip, begun_s, before.get(car), said, warned[car])
+
+
+def _car(
+    car: str, trip: CarTrip, begun_s: float, before: CarTrip | None, said: ShareLog, warnings: int
+) -> EquippedCar:
+    return EquippedCar(
+        car=car,
+        departs_s=round(trip.planned_s - begun_s, 1),
+        time_s=round(trip.until_s - trip.planned_s, 1),
+        arrived=trip.has_left,
+        before_s=None if before is None else round(before.until_s - before.planned_s, 1),
+        lost_s=round(trip.lost_s, 1),
+        driven_m=round(trip.driven_m),
+        reroutes=said.rerouted[car],
+        warnings=warnings,
+        error=said.errors.get(car, ""),
     )
 
 
@@ -470,10 +559,10 @@ class AdoptionStudy(StudyContent[AdoptionPlan, AdoptionRow]):
 
     plan_type = AdoptionPlan
     row_type = AdoptionRow
-    line_is = "seed, share and group of cars"
+    line_is = "seed, share and group of cars, and per equipped car"
 
     def lines(self) -> Iterator[Json]:
-        """Equipped cars, others and all of every share."""
+        """Equipped cars, others and all of every share, and each equipped car."""
         for row in self.rows:
             for each in row.shares:
                 about = {"scenario": row.scenario, "seed": row.seed, "share": each.share}
@@ -481,6 +570,8 @@ class AdoptionStudy(StudyContent[AdoptionPlan, AdoptionRow]):
                     cohort: Cohort | None = getattr(each, group)
                     if cohort is not None:
                         yield about | {"cars_of": group, **columns(cohort)}
+                for car in each.cars:
+                    yield about | {"cars_of": "one", **columns(car)}
 
     def of(self, share: float) -> Iterator[tuple[int, ShareOutcome]]:
         """The outcomes of a share, with their seeds."""
@@ -493,5 +584,7 @@ class AdoptionStudy(StudyContent[AdoptionPlan, AdoptionRow]):
         return tuple(sorted({each.share for row in self.rows for each in row.shares}))
 
 
-ADOPTION: BatchKind[AdoptionPlan, AdoptionJob, AdoptionRow] = BatchKind(AdoptionRow, partial(alone, run_seed))
+ADOPTION: BatchKind[AdoptionPlan, AdoptionJob, AdoptionRow] = BatchKind(
+    AdoptionRow, partial(alone, run_seed), (LIVE,)
+)
 """How it is run and stored."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.report.tables import Table
-from automotive_cosim.studies.adoption.adoption import AdoptionStudy, Cohort, ShareOutcome
+from automotive_cosim.report.templates import render
+from automotive_cosim.studies.adoption.adoption import AdoptionStudy, Cohort, EquippedCar, ShareOutcome
+from automotive_cosim.studies.adoption.fleets import DrivenFleet, fleet_id, read_fleet
 from automotive_cosim.studies.content import ShownStudy
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.reroute.tables import NONE, told_mean
@@ -18,6 +20,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Of = Callable[[ShareOutcome], "float | None"]
+KINDS = {
+    "sooner": "sooner than at share 0",
+    "later": "later",
+    "same": "at the same time",
+    "failed": "its assistant failed",
+}
+"""Cars on a map, by how they look."""
 NOTICED_S = 0.5
 """A gain at the smallest share of less is none of which a part could be gone: our choice."""
 
@@ -26,6 +35,7 @@ def shown(study: AdoptionStudy) -> ShownStudy:
     """What the report shows."""
     plan = study.plan
     about = f"{plan.agent}, {counted(len(plan.seeds), 'seed')}, {plan.minutes:g} minutes"
+    picture, pages = fleets(study)
     return ShownStudy(
         "Study of adoption",
         about,
@@ -33,7 +43,79 @@ def shown(study: AdoptionStudy) -> ShownStudy:
         warnings(study),
         [effects(study), assistants(study)],
         charts(study),
+        picture,
+        pages,
     )
+
+
+def fleets(study: AdoptionStudy) -> tuple[str, dict[str, str]]:
+    """The equipped cars of the first seed: a map of the greatest share with links, and a page for each share.
+
+    Raises:
+        UserError: a record is damaged.
+    """
+    row = next((each for each in study.rows if each.shares), None)
+    last, links, pages = "", [], {}
+    for outcome in row.shares if row else ():
+        fleet = read_fleet(study.folder, fleet_id(row.seed, outcome.share)) if row and outcome.cars else None
+        if row is None or fleet is None:
+            continue
+        name = f"cars-{fleet_id(row.seed, outcome.share)}.html"
+        cars = [_shown_car(number, car, fleet) for number, car in enumerate(outcome.cars, 1)]
+        left, bottom, right, top = fleet.box_m
+        drawn = {
+            "box": f"{left:.0f} {-top:.0f} {right - left:.0f} {top - bottom:.0f}",
+            "roads": " ".join(map(_path, fleet.roads)),
+            "cars": cars,
+            "dot": round(max(right - left, top - bottom) / 250, 1),
+            "kinds": KINDS,
+        }
+        title = f"{counted(len(cars), 'car')} with the assistant, {outcome.share:.0%} of all, seed {row.seed}"
+        pages[name] = render(
+            "studies/adoption/fleet.html",
+            **drawn,
+            title=title,
+            about=f"{study.plan.agent}, {study.plan.scenario}",
+            failed=outcome.failed,
+            map=render("studies/adoption/map.html", **drawn, page=""),
+        )
+        last = render("studies/adoption/map.html", **drawn, page=name)
+        links.append(f'<a href="{name}">{outcome.share:.0%}, {counted(len(cars), "car")}</a>')
+    told = (
+        f'<h2 id="cars">The cars of seed {row.seed}</h2>\n<p>Each car by itself: {" · ".join(links)}</p>'
+        if row
+        else ""
+    )
+    return (f"{told}\n{last}" if links else "", pages)
+
+
+def _shown_car(number: int, car: EquippedCar, fleet: DrivenFleet) -> dict[str, object]:
+    gain_s = None if car.before_s is None else car.before_s - car.time_s
+    kind = "failed" if car.error else "same" if not gain_s else "sooner" if gain_s > 0 else "later"
+    way = fleet.ways.get(car.car, ())
+    told = (
+        f"{'arrives' if car.arrived else 'is still on its way'} after {car.time_s:.0f} s and {car.driven_m:.0f} m"
+    )
+    without = (
+        "does not set out in time without"
+        if gain_s is None
+        else f"{_sooner(gain_s)} {'than' if abs(gain_s) >= 0.05 else 'as'} at share 0"
+    )
+    return {
+        "number": number,
+        "row": car,
+        "kind": kind,
+        "words": f"{told}, {without}",
+        "gain": NONE if gain_s is None else f"{gain_s:+.0f}",
+        "has_way": len(way) > 1,
+        "way": _path(way),
+        "end": [round(way[-1][0]), round(-way[-1][1])] if way else [],
+        "notes": fleet.notes.get(car.car, ()),
+    }
+
+
+def _path(way: Sequence[tuple[float, float]]) -> str:
+    return "".join(f"{'L' if number else 'M'}{x_m:.0f} {-y_m:.0f}" for number, (x_m, y_m) in enumerate(way))
 
 
 def mean(study: AdoptionStudy, share: float, of: Of) -> SeedMean | None:

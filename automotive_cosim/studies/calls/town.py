@@ -9,10 +9,12 @@ from zlib import crc32
 
 import numpy as np
 
-from automotive_cosim.contracts import DrivingState
+from automotive_cosim.contracts import DrivingState, RoadShapes, RoadSnapshot
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.lookout import read_shapes
+from automotive_cosim.traffic.records import make_seen
 from automotive_cosim.traffic.running import Running
 from automotive_cosim.traffic.sumo import LibSumo
 
@@ -53,6 +55,8 @@ class Town:
         self.trips: dict[str, CarTrip] = {}
         self.driving: dict[str, float] = {}
         """Who is on the road, and the gap that each keeps when standing."""
+        self.equipped: dict[str, tuple[str, float, float]] = {}
+        """Who has got a cockpit: vehicle class, length and width."""
 
     def after_step(self) -> None:
         """Records the step that has just been made."""
@@ -66,6 +70,11 @@ class Town:
                 self.trips[car] = replace(self.trips[car], until_s=now_s, has_left=True)
         for car, min_gap_m in self.driving.items():
             self.trips[car] = self._after(self.trips[car], car, min_gap_m, now_s)
+
+    def sit_in(self, car: str) -> None:
+        """Notes that a car has got a cockpit."""
+        of = self._sumo.vehicle
+        self.equipped[car] = of.getVehicleClass(car), of.getLength(car), of.getWidth(car)
 
     def _after(self, trip: CarTrip, car: str, min_gap_m: float, now_s: float) -> CarTrip:
         sumo, step_s = self._sumo, self._step_s
@@ -108,7 +117,7 @@ def equip(running: Running, share: float, seed: int, driver: str) -> None:
         seed: of the draw, and of the drivers' reactions.
         driver: name of the profile by which they react; else they drive as they would.
     """
-    running.convoy.chooses = partial(_plan, share, seed, driver)
+    running.convoy.chooses = partial(_plan, running.watcher(Town), share, seed, driver)
 
 
 def drawn(seed: int, car: str) -> float:
@@ -123,6 +132,22 @@ def woken(running: Running, car: str, seed: int, driver: str) -> tuple[bool, Dri
     if not is_there or running.sumo.edge_of(car) not in running.world.network.edges:
         return is_there, None
     return True, running.convoy.equip(car, EgoPlan(NOWHERE, driver, seed ^ crc32(car.encode()))).state
+
+
+def network_of(running: Running) -> RoadShapes:
+    """The whole network as a picture shows it."""
+    return replace(read_shapes(running.sumo), ground=running.world.network.map.ground)
+
+
+def seen(running: Running) -> RoadSnapshot:
+    """The equipped cars on the road now."""
+    sumo, town = running.sumo, running.watcher(Town)
+    here = (
+        make_seen(car, *size, *sumo.position(car), sumo.angle(car), sumo.speed(car), sumo.vehicle.getSignals(car))
+        for car, size in town.equipped.items()
+        if car in town.driving
+    )
+    return RoadSnapshot(sumo.time(), tuple(here), ())
 
 
 def trips_of(running: Running) -> Mapping[str, CarTrip]:
@@ -146,5 +171,8 @@ def way_of_device(running: Running, car: str) -> tuple[str, ...]:
     return () if way == own else tuple(way)
 
 
-def _plan(share: float, seed: int, driver: str, car: str) -> EgoPlan | None:
-    return EgoPlan(NOWHERE, driver, seed ^ crc32(car.encode())) if drawn(seed, car) < share else None
+def _plan(town: Town, share: float, seed: int, driver: str, car: str) -> EgoPlan | None:
+    if drawn(seed, car) >= share:
+        return None
+    town.sit_in(car)
+    return EgoPlan(NOWHERE, driver, seed ^ crc32(car.encode()))

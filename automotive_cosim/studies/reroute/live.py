@@ -137,7 +137,8 @@ class LiveDrive:
         self._lines = growing(folder / STEPS, anew=True)
         for line in self._told:
             self._write(line)
-        self._road = RoadWriter(folder / ROAD, self._traffic, about, self._begun_s)
+        traffic = self._traffic
+        self._road = RoadWriter(folder / ROAD, traffic.shapes(), traffic.network, about, self._begun_s)
 
     def _look(self) -> None:
         """A second of the road."""
