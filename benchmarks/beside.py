@@ -20,14 +20,7 @@ from pathlib import Path
 
 MARK = "XDG_RUNTIME_DIR"
 """Passed on to the keeper and to simulations: by its value, processes are told to be of one part."""
-LISTINGS = (
-    ("--help",),
-    ("run", "--help"),
-    ("tasks", "list"),
-    ("scenarios", "list"),
-    ("show", "drives"),
-    ("agents", "list"),
-)
+LISTINGS = ("--help", "run --help", "tasks list", "scenarios list", "show drives", "agents list")
 PARTS = ("listings", "lean", "full", "reset", "second", "kept")
 
 
@@ -58,6 +51,8 @@ def spent_s(command: list[str], mark: str, cwd: Path, until: Path | None = None)
         seen |= processes(mark)
         running.terminate()
         running.wait()
+    if running.returncode > 0:
+        raise SystemExit(f"{' '.join(command)} failed in {cwd}")
     return sum(each_s - before.get(pid, 0.0) for pid, each_s in seen.items())
 
 
@@ -210,7 +205,7 @@ def main() -> None:
         for name in rounds[0][0]:
             best = max if "per second" in name else min
             before, now = (best(both[side][name] for both in rounds) for side in (0, 1))
-            print(f"| {name} | {before:,.2f} | {now:,.2f} | {now / before:.2f} |", flush=True)
+            print(f"| {name} | {before:,.2f} | {now:,.2f} | {now / before if before else 0.0:.2f} |", flush=True)
     print(f"\nload {os.getloadavg()[0]:.1f}, {given.rounds} rounds in turns")
 
 
