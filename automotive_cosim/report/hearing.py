@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import wave
 from collections.abc import Sequence
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,7 @@ from automotive_cosim.formats.layout import SOUNDS, sound
 from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.report.plot import BOTTOM, LEFT, RIGHT, TOP
 from automotive_cosim.voice.cabin import driver_snr_db
-from automotive_cosim.voice.engines import RATE_HZ, from_wav
+from automotive_cosim.voice.engines import RATE_HZ, from_wav, is_installed
 from automotive_cosim.voice.table import sounding
 
 QUIETEST_DB, LOUDEST_DB, LINE_DB = 30, 110, 20
@@ -38,7 +37,7 @@ def utterances(step: Json, goal: str) -> list[Json]:
 
 def can_sound(folder: Path, step: int, number: int) -> bool:
     """Whether ``sounded`` has it, or can make it with the extra ``voice``."""
-    return sound(folder, step, number).is_file() or find_spec("piper") is not None
+    return sound(folder, step, number).is_file() or is_installed()
 
 
 def sounded(folder: Path, step: int, number: int, uttered: Json) -> bytes:

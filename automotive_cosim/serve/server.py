@@ -141,6 +141,7 @@ class Site:
             for pattern, route in (
                 (r"/api/play", lambda _, query: self._scene(self._own_game, query)),
                 (r"/api/play/screen", lambda _, __: _screen(self._own_game)),
+                (r"/api/study/seen", lambda _, __: _json(self._studied.seen())),
                 (r"/api/study/rows\.(?P<kind>csv|json)", self._rows),
                 (r"/api/runs", lambda _, __: _json(content.runs())),
                 (rf"/api/runs/{run}{episode}", lambda path, _: _json(content.run(path["run"], path["episode"]))),
@@ -251,6 +252,8 @@ class Site:
                 study.begin(seat)
             case "answer":
                 study.answer(seat, asked)
+            case "detected":
+                study.detect(seat, asked)
             case _:
                 raise _RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
         return {}

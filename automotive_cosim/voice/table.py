@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import lzma
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 
@@ -71,6 +71,23 @@ def pieces(text: str) -> Iterator[str]:
     yield " ".join(piece)
     if text.endswith(LOOK_FIRST):
         yield LOOK_FIRST
+
+
+def lacking(texts: Iterable[str]) -> list[str]:
+    """The pieces of English texts that cannot be heard here: the table lacks them, and the extra is missing."""
+    known = _shipped()
+    every = dict.fromkeys(piece for text in texts for piece in pieces(text) if piece not in known)
+    return [] if engines.is_installed() else list(every)
+
+
+def check(texts: Iterable[str]) -> None:
+    """Refuses English texts that cannot all be heard here.
+
+    Raises:
+        InfrastructureError: the table does not have one, and the extra is missing.
+    """
+    if missing := lacking(texts):
+        raise _unheard(missing[0])
 
 
 def recognise(texts: Sequence[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -134,10 +151,14 @@ def _heard(piece: str) -> tuple[str, ...]:
     try:
         return next(recognise([piece]))[1]
     except SetupError:
-        raise InfrastructureError(
-            f"the table of what was heard does not have {piece!r}; {install_hint('voice')} says it when it is "
-            "needed, or give --hear text"
-        ) from None
+        raise _unheard(piece) from None
+
+
+def _unheard(piece: str) -> InfrastructureError:
+    return InfrastructureError(
+        f"the table of what was heard does not have {piece!r}; {install_hint('voice')} says it when it is "
+        "needed, or give another seed, or --hear text"
+    )
 
 
 def _column(snr_db: float) -> int:
