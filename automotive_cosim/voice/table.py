@@ -55,7 +55,7 @@ def heard(text: str, snr_db: float) -> str:
     Raises:
         InfrastructureError: the table does not have it, and the extra is missing.
     """
-    return came_from(text) + " ".join(_heard(piece)[_column(snr_db)] or NOTHING for piece in pieces(text))
+    return came_from(text) + " ".join(_heard(piece, _column(snr_db)) or NOTHING for piece in pieces(text))
 
 
 def pieces(text: str) -> Iterator[str]:
@@ -63,12 +63,13 @@ def pieces(text: str) -> Iterator[str]:
     text = _FROM.sub("", text, count=1)
     rest = text.removesuffix(LOOK_FIRST).strip()
     piece: list[str] = []
-    for sentence in _SENTENCE.split(rest):
+    for sentence in _SENTENCE.split(rest) if rest else ():
         if piece and len(" ".join([*piece, sentence]).split()) > MOST_WORDS:
             yield " ".join(piece)
             piece = []
         piece.append(sentence)
-    yield " ".join(piece)
+    if piece:
+        yield " ".join(piece)
     if text.endswith(LOOK_FIRST):
         yield LOOK_FIRST
 
@@ -144,12 +145,13 @@ def came_from(text: str) -> str:
 
 
 @lru_cache(maxsize=4096)
-def _heard(piece: str) -> tuple[str, ...]:
+def _heard(piece: str, column: int) -> str:
     known = _shipped().get(piece)
     if known is not None:
-        return known
+        return known[column]
     try:
-        return next(recognise([piece]))[1]
+        (sound,) = engines.said([piece])
+        return engines.recognised(engines.in_cabin(sound, LEVELS_DB[column], piece))
     except SetupError:
         raise _unheard(piece) from None
 
