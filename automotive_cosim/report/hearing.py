@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import SetupError, UserError, install_hint
+from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
 from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import SOUNDS, sound
 from automotive_cosim.formats.writing import make_folder, write_whole
@@ -46,7 +46,8 @@ def sounded(folder: Path, step: int, number: int, uttered: Json) -> bytes:
 
     Raises:
         SetupError: there is none, and the extra ``voice`` is missing.
-        UserError: that file is no WAV file, or the voice could not say it.
+        UserError: that file is no WAV file.
+        InfrastructureError: the voice could not say it.
     """
     path = sound(folder, step, number)
     if not path.is_file():
@@ -69,7 +70,7 @@ def with_sounds(folder: Path, steps: Sequence[Json], goal: str) -> tuple[list[Js
                     write_whole(make_folder(folder, SOUNDS) / path.name, wav)
             except SetupError:
                 why = f"After `{install_hint('voice')}`, the pages of `serve` and of further runs play it."
-            except UserError as error:
+            except (UserError, InfrastructureError) as error:
                 why = f"No sound: {error}."
             told.append(uttered | {"at_s": step["at_s"], "wav": small(wav) if wav else b""})
     return told, why

@@ -31,7 +31,7 @@ from urllib.parse import parse_qs, unquote, urlsplit
 
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.errors import CosimError, UnknownNameError, UserError
 from automotive_cosim.formats.files import parse_json, read_bytes
 from automotive_cosim.formats.layout import road_view, screenshot
 from automotive_cosim.safety.page import PAGE
@@ -198,7 +198,7 @@ class Site:
                     return route(found.groupdict(), query)
                 except (NotHereError, UnknownNameError) as error:
                     raise _RefusedRequestError(HTTPStatus.NOT_FOUND, str(error)) from error
-                except (UserError, OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+                except (CosimError, OSError, ValueError, LookupError, TypeError, AttributeError) as error:
                     why = f"this record cannot be read: {error}"
                     raise _RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, why) from error
         raise _RefusedRequestError(HTTPStatus.NOT_FOUND, "there is no such page")

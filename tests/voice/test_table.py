@@ -92,3 +92,30 @@ def test_the_engines_hear_what_the_table_says(tmp_path):
     shipped = table.read()
     texts = sorted(shipped)[:5]
     assert dict(table.recognise(texts)) == {text: shipped[text] for text in texts}
+
+
+def test_a_damaged_voice_or_recogniser_is_one_line_and_costs_one_trial(monkeypatch, tmp_path):
+    class Broken:
+        """Stands for every package of the extra."""
+
+        @staticmethod
+        def model_path():
+            return tmp_path / "none.onnx"
+
+        get_model_path = model_path
+
+        @staticmethod
+        def WhisperModel(*where, **how):  # noqa: N802, its name
+            raise RuntimeError("Unable to open file\nmodel.bin")
+
+    monkeypatch.setattr(engines, "_module", lambda name: Broken)
+    engines._recogniser.cache_clear()
+    with pytest.raises(InfrastructureError, match=r"^the voice said 0 of 1 sentences: "):
+        table.heard("Nobody has said this yet.", 0.0)
+    with pytest.raises(InfrastructureError, match=r"^the voice said 0 of 1 sentences: "):
+        table.sounding("Nobody has said this yet.", 1.5)
+    monkeypatch.setattr(engines, "said", lambda texts: [np.ones(1600, np.float32) for _ in texts])
+    with pytest.raises(
+        InfrastructureError, match=r"^the recogniser .* cannot be loaded \(Unable to open file model\.bin"
+    ):
+        table.heard("Nobody has said this yet.", 0.0)
