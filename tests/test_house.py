@@ -46,7 +46,7 @@ CEILINGS = {
     "proof": (3117, 16, 0),
     "publish": (1620, 8, 0),
     "replay": (189, 1, 0),
-    "report": (5473, 24, 0),
+    "report": (5474, 24, 0),
     "run": (8522, 80, 0),
     "safety": (4275, 33, 0),
     "scenarios": (1981, 8, 0),
@@ -56,10 +56,10 @@ CEILINGS = {
     "studies": (13926, 124, 90),
     "tasking": (5325, 60, 0),
     "tasks": (15, 0, 0),
-    "tests": (65131, 125, 0),
+    "tests": (65158, 125, 0),
     "traffic": (12476, 80, 0),
     "view": (1771, 15, 0),
-    "voice": (500, 0, 0),
+    "voice": (514, 0, 0),
     "beside them": (319, 15, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""

@@ -95,7 +95,7 @@ def test_the_engines_hear_what_the_table_says(tmp_path):
 
 
 def test_a_damaged_voice_or_recogniser_is_one_line_and_costs_one_trial(monkeypatch, tmp_path):
-    class Broken:
+    class _Broken:
         """Stands for every package of the extra."""
 
         @staticmethod
@@ -108,7 +108,7 @@ def test_a_damaged_voice_or_recogniser_is_one_line_and_costs_one_trial(monkeypat
         def WhisperModel(*where, **how):  # noqa: N802, its name
             raise RuntimeError("Unable to open file\nmodel.bin")
 
-    monkeypatch.setattr(engines, "_module", lambda name: Broken)
+    monkeypatch.setattr(engines, "_module", lambda name: _Broken)
     engines._recogniser.cache_clear()
     with pytest.raises(InfrastructureError, match=r"^the voice said 0 of 1 sentences: "):
         table.heard("Nobody has said this yet.", 0.0)
