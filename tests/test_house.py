@@ -51,7 +51,7 @@ CEILINGS = {
     "safety": (4275, 33, 0),
     "scenarios": (2000, 8, 0),
     "schemas": (84, 0, 0),
-    "serve": (2642, 22, 0),
+    "serve": (2741, 22, 0),
     "service": (396, 4, 0),
     "studies": (13926, 124, 90),
     "tasking": (5347, 60, 0),
@@ -59,7 +59,7 @@ CEILINGS = {
     "tests": (64989, 125, 0),
     "traffic": (12476, 80, 0),
     "view": (1771, 15, 0),
-    "voice": (470, 0, 0),
+    "voice": (514, 0, 0),
     "beside them": (319, 15, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
