@@ -373,6 +373,9 @@ def test_pages_count_the_tasks_as_they_are():
     voice = Counter(task.id.split("_")[1] for task in CATALOGUE.of(Suite.VOICE))
     assert f"has {voice.total()} pairs in which noise in the cabin, or who spoke, decides" in reference
     assert [f"`voice_{kind}_*` ({count})" in reference for kind, count in voice.items()] == [True] * 3
+    assert (
+        f"The suite `people` has {len(CATALOGUE.of(Suite.PEOPLE))} pairs in which those aboard react" in reference
+    )
     clarify = len(CATALOGUE.of(Suite.CLARIFY))
     asking = sum("asking" in task.tags for task in standard)
     assert f"has {clarify} pairs about wishes that leave something open" in reference
