@@ -27,7 +27,7 @@ OTHERS = "beside them"
 
 CEILINGS = {
     "agents": (6518, 66, 0),
-    "benchmarks": (2757, 19, 0),
+    "benchmarks": (2756, 19, 0),
     "cli": (4629, 13, 196),
     "cockpit": (18559, 186, 0),
     "contracts": (1561, 67, 0),
@@ -54,9 +54,9 @@ CEILINGS = {
     "serve": (2642, 22, 0),
     "service": (396, 4, 0),
     "studies": (13926, 124, 90),
-    "tasking": (5318, 60, 0),
+    "tasking": (5325, 60, 0),
     "tasks": (15, 0, 0),
-    "tests": (64953, 125, 0),
+    "tests": (65023, 125, 0),
     "traffic": (12476, 80, 0),
     "view": (1771, 15, 0),
     "voice": (470, 0, 0),
@@ -65,7 +65,7 @@ CEILINGS = {
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
 
-DATA_LINES, WIDTH = 15_609, 130
+DATA_LINES, WIDTH = 15_760, 130
 """Lines of the tasks' files, with every phrasing, and characters of the longest."""
 
 

@@ -25,6 +25,7 @@ from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.interface.functions import functions
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Hurry
 from automotive_cosim.tasks import CATALOGUE
 from docs import tables
 from tests.laws import over
@@ -376,6 +377,10 @@ def test_pages_count_the_tasks_as_they_are():
     assert (
         f"The suite `people` has {len(CATALOGUE.of(Suite.PEOPLE))} pairs in which those aboard react" in reference
     )
+    hurried = Counter(task.hurries for task in CATALOGUE.values())
+    road, call, words = (hurried[kind] for kind in Hurry)
+    live = f"eight seconds ({road} pairs), somebody rings ({call}), or the driver says more on the way ({words})."
+    assert live in reference
     clarify = len(CATALOGUE.of(Suite.CLARIFY))
     asking = sum("asking" in task.tags for task in standard)
     assert f"has {clarify} pairs about wishes that leave something open" in reference
