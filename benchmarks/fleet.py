@@ -12,19 +12,36 @@ from __future__ import annotations
 import argparse
 import os
 import time
+from contextlib import closing, suppress
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
-from automotive_cosim.envs.flat_drive import FlatDriveEnv
+from automotive_cosim.agents.cleanup import tree
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import Action, ActionType
+from automotive_cosim.cosim.simulation import couple
+from automotive_cosim.drives.session import DriveSession
+from automotive_cosim.envs.flat_drive import CHANNELS, FlatDriveEnv
 from automotive_cosim.envs.fleet import FleetVectorEnv
 from automotive_cosim.envs.vector import ConcurrentVectorEnv
+from automotive_cosim.episode.fleet import Fleet
+from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.run.measure import pss_mb
+from automotive_cosim.studies.adoption.adoption import AdoptionPlan
+from automotive_cosim.studies.calls.town import NOWHERE, driving
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 FAMILY = "paris_july"
 """Its drives are in paris_centre."""
-ENTER_STEPS = 20
-"""In these all cars enter; nothing is timed."""
+ENTER_STEPS = 600
+"""In these at most, all cars enter, each where its trip begins as soon as there is a gap; nothing is timed."""
+COLUMNS = ("", "cars", "in traffic", "act in a step", "decisions a second", "ms a decision", "of a processor")
+COLUMNS += ("MB", "MB a car")
+LEAST_STEPS = 20
+"""The same at least."""
 
 
 def measured(kind: str, cars: int, scenario: str, steps: int) -> str:
@@ -37,18 +54,88 @@ def measured(kind: str, cars: int, scenario: str, steps: int) -> str:
         envs = ConcurrentVectorEnv([make] * cars)
     envs.reset(seed=1)
     waits = np.ones(cars, np.int64)
-    for _ in range(ENTER_STEPS):
+    entered: set[str] = set()
+    for number in range(ENTER_STEPS):
+        entered |= set(envs.fleet.agents) if isinstance(envs, FleetVectorEnv) else {str(car) for car in range(cars)}
+        if number >= LEAST_STEPS and len(entered) == cars:
+            break
         envs.step(waits)
-    decisions, begun_s = 0, time.perf_counter()
+    driven = len(envs.fleet.agents) if isinstance(envs, FleetVectorEnv) else cars
+    decisions, begun_s, worked_s = 0, time.perf_counter(), processor_s()
     for _ in range(steps):
         info = envs.step(waits)[4]
         decisions += int(info["acted"].sum()) if kind == "fleet" else cars
     took_s, memory_mb = time.perf_counter() - begun_s, pss_mb() - before_mb
+    worked_s = processor_s() - worked_s
     envs.close()
-    return (
-        f"| {kind} | {cars} | {decisions / steps:.0f} | {decisions / took_s:.1f} | "
-        f"{1000 * took_s / decisions:.2f} | {memory_mb:.0f} |"
+    return told(kind, cars, driven, decisions, steps, took_s, worked_s, memory_mb)
+
+
+def equipped(cars: int, scenario: str, steps: int, scale: float) -> str:
+    """The same of cars that drive anyway when they get a cockpit, all at once at the end of the warm-up."""
+    plan = AdoptionPlan(scenario or "paris_centre", scale=scale)
+    before_mb = pss_mb()
+    with closing(Forked(plan.scene(), 1, allow_unprojected=True)) as warm, closing(warm.road()) as road:
+        fleet, sessions = Fleet[None](road.step_s), dict[str, tuple[RemoteTraffic, DriveSession]]()
+        for name in road.call(driving)[:cars]:
+            car = road.equip(name, EgoPlan(NOWHERE))
+            sessions[name] = car, session_of(car, plan)
+        decisions, begun_s, worked_s = 0, time.perf_counter(), processor_s()
+        for number in range(steps):
+            for odd, (name, (car, session)) in enumerate(sessions.items()):
+                if name not in fleet.busy and session.end is None:
+                    wait = Action(ActionType.WAIT, seconds=2.0 if number or odd % 2 else 1.0)
+                    fleet.begin(name, session.stepping(wait), partial(time_of, car))
+            decisions += len(fleet.run())
+        took_s, worked_s = time.perf_counter() - begun_s, processor_s() - worked_s
+        return told("equipped", cars, len(sessions), decisions, steps, took_s, worked_s, pss_mb() - before_mb)
+
+
+def time_of(car: RemoteTraffic) -> float:
+    """To which a car has driven."""
+    return car.state.time_s
+
+
+def session_of(car: RemoteTraffic, plan: AdoptionPlan) -> DriveSession:
+    """A cockpit without a screen in a car, and nobody at it."""
+    scenario, draws = plan.scene(), (np.random.default_rng(seed) for seed in (1, 2))
+    world = couple(
+        car,
+        Cockpit(car.network, rng=next(draws), lookout=True),
+        scenario,
+        gps_rng=next(draws),
+        weather=scenario.weather,
+        departure=scenario.start,
     )
+    return DriveSession.depart_with(world, SessionSetup(CHANNELS, lean=True), judged=False)
+
+
+def told(
+    kind: str, cars: int, driven: int, decisions: int, steps: int, took_s: float, worked_s: float, memory_mb: float
+) -> str:
+    """A row of Markdown."""
+    found = (
+        kind,
+        cars,
+        driven,
+        round(decisions / steps),
+        f"{decisions / took_s:.1f}",
+        f"{1000 * took_s / decisions:.2f}",
+        f"{1000 * worked_s / decisions:.2f}",
+        round(memory_mb),
+        f"{memory_mb / driven:.1f}",
+    )
+    return f"| {' | '.join(map(str, found))} |"
+
+
+def processor_s() -> float:
+    """Processor time of this process and of all that it started and that still run."""
+    total = 0.0
+    for pid in tree(os.getpid()):
+        with suppress(OSError):
+            fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+            total += (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return total
 
 
 def main() -> None:
@@ -58,11 +145,15 @@ def main() -> None:
     parser.add_argument("--copies", type=int, nargs="*", default=[], help="copies of the environment")
     parser.add_argument("--scenario", default="", help="a scenario or network; paris_centre if left out")
     parser.add_argument("--steps", type=int, default=30, help="steps to time")
-    told = parser.parse_args()
-    print("| | cars | in the traffic | decisions a second | ms a decision | MB in all |\n|---|--:|--:|--:|--:|--:|")
-    for kind, counts in (("fleet", told.cars), ("copies", told.copies)):
+    parser.add_argument("--equipped", type=int, nargs="*", default=[], help="cars that drive anyway, with cockpits")
+    parser.add_argument("--scale", type=float, default=2.0, help="factor on the traffic of these")
+    given = parser.parse_args()
+    print(f"| {' | '.join(COLUMNS)} |\n|---{(len(COLUMNS) - 1) * '|--:'}|")
+    for kind, counts in (("fleet", given.cars), ("copies", given.copies)):
         for count in counts:
-            print(measured(kind, count, told.scenario, told.steps), flush=True)
+            print(measured(kind, count, given.scenario, given.steps), flush=True)
+    for count in given.equipped:
+        print(equipped(count, given.scenario, given.steps, given.scale), flush=True)
 
 
 if __name__ == "__main__":

@@ -256,6 +256,11 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
             "left out",
             f"{_named(unspoken)}: no phrasings in {languages_in_words(plan.languages)}",
         )
+    if unheard := plan.unheard():
+        table.add_row(
+            "not heard",
+            f"{unheard} of {counted(len(jobs), 'run')}: the table lacks what is said; {install_hint('voice')}",
+        )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     for each in TABLE:
         table.add_row(each.words.heading.lower(), ", ".join(map(each.told, lists_of(plan)[each.name])))

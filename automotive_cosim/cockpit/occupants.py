@@ -130,7 +130,7 @@ def take_seats(signals: Signals, aboard: Iterable[Occupant]) -> None:
 
 def seated(signals: Signals) -> Iterator[Occupant]:
     """Who is aboard now, by the signals, in the order of the seats."""
-    return seated_by(signals.snapshot())
+    return iter(_seated(signals.picked(_read)))
 
 
 def seated_by(values: Mapping[str, Any]) -> Iterator[Occupant]:
@@ -175,5 +175,10 @@ def breath(signals: Signals, without: Seat | None = None) -> float:
     Args:
         without: a seat that is left out, as the driver's once the driver has gone.
     """
-    bodies = (one for one in seated(signals) if one.kind is not Kind.OBJECT and one.seat is not without)
+    return _breath(signals.picked(_read), without)
+
+
+@lru_cache(maxsize=256)
+def _breath(values: tuple[Any, ...], without: Seat | None) -> float:
+    bodies = (one for one in _seated(values) if one.kind is not Kind.OBJECT and one.seat is not without)
     return sum(math.pow((one.weight_kg or 0.0) / USUAL_KG[Kind.ADULT], 0.75) for one in bodies)

@@ -12,7 +12,7 @@ off. What VSS lacks has paths in its manner.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from operator import itemgetter
@@ -524,6 +524,10 @@ class Signals:
         if values[DRIVER.DISTRACTION.path] is None:
             del values[DRIVER.DISTRACTION.path], values[DRIVER.FATIGUE.path]
         return values
+
+    def picked(self, read: Callable[[Mapping[str, Any]], tuple[Any, ...]]) -> tuple[Any, ...]:
+        """What a getter takes of all paths and values, without a copy of them."""
+        return read(self._values)
 
     def commanded(self) -> dict[str, Any]:
         """Path and value of every actuator; a copy."""

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Trip, open_scenario
+from automotive_cosim.scenarios import Scenario, Trip, open_scenario
 from automotive_cosim.scenarios.opening import network_of
-from automotive_cosim.traffic.network import Network
-from automotive_cosim.traffic.rounds import planned
+from automotive_cosim.traffic.options import read_configuration, stamp
+from automotive_cosim.traffic.rounds import in_turn
 
 
 def elsewhere(script: DriveScript, place: str) -> DriveScript:
@@ -28,7 +27,7 @@ def elsewhere(script: DriveScript, place: str) -> DriveScript:
         ScenarioError: its files are invalid, or none of its trips can be driven again and again.
     """
     scenario = open_scenario(place)
-    trips = _in_turn(network_of(scenario).open_at_all_hours(), scenario.ego.trips)
+    trips = _in_turn(scenario, stamp(read_configuration(scenario.config)))
     if not trips:
         raise ScenarioError(
             f"no trip of {place} leads back to its start, so a drive would end too soon; a drive needs a "
@@ -47,14 +46,7 @@ def name_of(family: str, place: str) -> str:
     return f"{Path(place).name.partition('.')[0]}_{family.rpartition('_')[2]}"
 
 
-def _in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:
-    """The largest set of trips found that can be driven one after another."""
-    best: tuple[Trip, ...] = ()
-    for first in trips:
-        round_: tuple[Trip, ...] = ()
-        for trip in (first, *(other for other in trips if other is not first)):
-            with suppress(ScenarioError):  # no route leads from it to the others
-                planned(network, first, (*round_, trip))
-                round_ = (*round_, trip)
-        best = max(best, round_, key=len)
-    return best
+@lru_cache(maxsize=16)
+def _in_turn(scenario: Scenario, files: tuple[object, ...]) -> tuple[Trip, ...]:
+    """Its trips that can be driven in turn; kept while its files are as they are, for every reset asks for them."""
+    return in_turn(network_of(scenario).open_at_all_hours(), scenario.ego.trips)

@@ -7,8 +7,9 @@ asks for something. One of them is declined by the driver at once.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES
@@ -108,6 +109,11 @@ def thanks(errand: Errand, language: Language) -> str:
     return THANKS[language].format(words=said(errand, language))
 
 
+def words_about(errand: Errand, language: Language) -> tuple[str, ...]:
+    """Everything that may be said about it."""
+    return (said(errand, language), *(() if errand.is_declined else (thanks(errand, language),)))
+
+
 def said(errand: Errand, language: Language) -> str:
     """What is said; with the driver's no, if it is declined."""
     words = WORDS[language]
@@ -132,6 +138,17 @@ def understood(text: str) -> Errand | None:
                     wanted=named.get("wanted", errand.wanted),
                 )
     return None
+
+
+def every() -> Iterator[Errand]:
+    """Every errand that can be drawn, declined or not."""
+    named = (
+        *(Errand(ErrandKind.CLIMATE, 0.0, *each) for each in product(("driver", "passenger"), DEGREES)),
+        *(Errand(ErrandKind.MESSAGE, 0.0, *each) for each in product(PEOPLE, REPLIES)),
+        *(Errand(ErrandKind.CALL, 0.0, who) for who in PEOPLE),
+        Errand(ErrandKind.PLACE, 0.0, PLACE),
+    )
+    return (replace(each, is_declined=is_declined) for each in named for is_declined in (False, True))
 
 
 def _forms() -> tuple[Errand, ...]:

@@ -10,7 +10,6 @@ from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd
 from automotive_cosim.cosim.attention import GLANCE_S
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import DriveAct
-from automotive_cosim.geo.breaches import binding_limit
 from automotive_cosim.measures.following import is_near
 
 WORDS_PER_S = 4.0
@@ -41,7 +40,7 @@ def harm(drive: Sequence[Moment]) -> Harm:
     over_s = over_m = short_s = unaware_s = 0.0
     for before, now in pairwise(drive):
         dt_s = now.time_s - before.time_s
-        limit = binding_limit(now.context)
+        limit = now.context.binding_limit
         excess_kmh = 0.0 if limit is None else now.driving.speed_mps * KMH_PER_MPS - limit.kmh
         if excess_kmh > 1.0:
             over_s += dt_s

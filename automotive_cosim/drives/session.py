@@ -14,13 +14,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
+from automotive_cosim.contracts.given import Hearing
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, refusal, spoken
 from automotive_cosim.drives.alarm import Alarm, Noticed, noticed
 from automotive_cosim.drives.changes import FAR_S, LONGEST_S
 from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
-from automotive_cosim.drives.errands import said, thanks
+from automotive_cosim.drives.errands import said, thanks, words_about
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, Tracker
 from automotive_cosim.drives.events.errands import carried_out
 from automotive_cosim.drives.harm import Harm, harm
@@ -30,6 +31,7 @@ from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Baseline, JudgedSession, TakesTime, beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.interface.observe import Channel
+from automotive_cosim.voice.table import check
 
 CHANGED = "something changed"
 """What a result says of all that ends a wait; the readings say what it was."""
@@ -120,6 +122,9 @@ class DriveSession(JudgedSession):
             TrafficError: the traffic simulation failed.
         """
         words = ordered(setup.conditions.order, setup.conditions.language, with_errands=bool(world.car.errands))
+        if setup.conditions.hear is Hearing.CABIN:
+            language = setup.conditions.language
+            check((words, *(text for each in world.car.errands for text in words_about(each, language))))
         begun: dict[str, Any] = beginning(world, words, setup, (), observer)
         session = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm(), judged=judged)
         session._note(world.moment)

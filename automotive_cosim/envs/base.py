@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action
+from automotive_cosim.contracts.given import Hearing
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.session import Session, TakesTime, driven
 from automotive_cosim.episode.specification import SessionSetup
@@ -117,9 +118,9 @@ def ended(session: Session) -> tuple[bool, bool]:
 
 def spaces_of(setup: SessionSetup) -> tuple[gym.spaces.Dict, gym.spaces.Dict]:
     """The observation and the action space of a session."""
-    size = setup.conditions.screen
+    size, with_sound = setup.conditions.screen, setup.conditions.hear is Hearing.AUDIO
     return (
-        spaces.observation_space(setup.given, size.width, size.height),
+        spaces.observation_space(setup.given, size.width, size.height, with_sound=with_sound),
         spaces.action_space(size.width, size.height),
     )
 

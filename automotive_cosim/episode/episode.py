@@ -10,6 +10,7 @@ from typing import Any
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.state import CommandRecord
+from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Baseline, JudgedSession, TakesTime, beginning
@@ -18,7 +19,7 @@ from automotive_cosim.episode.specification import ROUNDING_S, End, EpisodeSpec,
 from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
+from automotive_cosim.tasking.dialogue import TALKED_OVER, Question, Says, dialogue, questions, spoken_s, topic_of
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import Verdict, judge
 from automotive_cosim.traffic.fork import Simulations
@@ -196,9 +197,25 @@ class Episode(JudgedSession):
     def _is_topic(self, question: str) -> bool:
         return topic_of(question, self.instance.half.topics) is not None
 
+    def _talked_over(self, action: Action) -> tuple[Feedback, float, tuple[str, ...]] | None:
+        if action.action_type not in (ActionType.ASK_DRIVER, ActionType.ANSWER):
+            return None
+        start, now, done, lasts_s = (
+            self.moments[0],
+            self.moments[-1],
+            len(self.steps) - 1,
+            spoken_s(action.text or ""),
+        )
+        for says in self.unsaid:
+            if 0 < says.over_s < lasts_s and says.is_due(start, now, done):
+                self.unsaid = tuple(each for each in self.unsaid if each is not says)
+                self.remarks += (says.text,)
+                return Feedback(FeedbackCode.OK, TALKED_OVER), says.over_s + spoken_s(says.text), (says.text,)
+        return None
+
     def _remarks(self) -> tuple[str, ...]:
         start, now, steps = self.moments[0], self.moments[-1], len(self.steps)
-        due = tuple(says for says in self.unsaid if says.is_due(start, now, steps))
+        due = tuple(says for says in self.unsaid if not says.over_s and says.is_due(start, now, steps))
         self.unsaid = tuple(says for says in self.unsaid if says not in due)
         return tuple(says.text for says in due)
 

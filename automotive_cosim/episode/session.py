@@ -158,7 +158,7 @@ class Session:
         if why := self._barred(action):
             yield from self.refusing(why)
             return
-        feedback, cost_s, said = self._by_ear(action) or self._done(action)
+        feedback, cost_s, said = self._by_ear(action) or self._talked_over(action) or self._done(action)
         self._ask(action, said)
         if action.action_type is ActionType.STATUS:
             self.declared, self.reason = action.goal_status, action.reason
@@ -283,6 +283,10 @@ class Session:
         else:
             return None
         return Feedback(FeedbackCode.OK, ""), spoken_s(text, *said), said
+
+    def _talked_over(self, action: Action) -> tuple[Feedback, float, tuple[str, ...]] | None:
+        """As ``_done``, of words that the driver talks over: nothing is done."""
+        return None
 
     @property
     def _hears(self) -> bool:

@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import DRIVE, HMI, MOTION
 from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import RoadNetwork
-from automotive_cosim.contracts.given import CarMake
+from automotive_cosim.contracts.given import CarMake, Hearing
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.observer import Observer
@@ -31,6 +31,7 @@ from automotive_cosim.tasking.ways import units_in
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.voice.table import check
 
 WAITS_S = (0.0, 41.0, 113.0, 197.0, 307.0, 431.0)
 """Delays of further departures, tried one by one until the situation arises; out of step with the usual cycles of
@@ -110,10 +111,14 @@ class SituationFinder:
 
         Raises:
             TriggerNotReachedError: the situation did not arise within its time limit.
+            InfrastructureError: what is said can neither be looked up nor recognised (``voice.table``).
             TrafficError: the traffic simulation failed.
         """
         draws = Draws(self.task.id, seeds.instance, self._spec.redrawn)
-        half = self._draw(draws).half
+        instance = self._draw(draws)
+        half = instance.half
+        if self._spec.conditions.hear is Hearing.CABIN:  # what is drawn from the cockpit is known at the hand-over
+            check(text for text in instance.spoken if "<" not in text)
         self._observer.loading(self.scenario)
         trips, waits_s = self._trips(half, draws), WAITS_S[:1] if half.start.parked else WAITS_S
         with self._simulations.held(self.scenario, seeds.traffic, self._warming) as simulation:
@@ -287,6 +292,8 @@ class SituationFinder:
             drive = drive.freshened(freshness)
         drive.world.cockpit.expect(half.start.interruptions)
         instance = replace(self._draw(draws, drive.world.cockpit.content), rule=rule)
+        if self._spec.conditions.hear is Hearing.CABIN:
+            check(instance.spoken)
         return HandOver(instance, drive.world, drive.moments, self.scenario, traffic_seed)
 
     def _advanced(self, world: CoSimulation) -> tuple[Moment, ...]:

@@ -9,14 +9,15 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Ge, Gt, Le
 
-from automotive_cosim.contracts.given import Language
+from automotive_cosim.contracts.given import Hearing, Language
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.settings import EpisodeSettings
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.observe import ALL, Channel, See
 from automotive_cosim.tasking.draws import SEED_LIMIT
+from automotive_cosim.voice.engines import is_installed
 
 ACTION_COST_S = 1.0
 """Simulated seconds per action: about the time of a person's tap (NHTSA 2013 counts glances of up to 2 s)."""
@@ -52,6 +53,7 @@ class SessionSetup:
         Raises:
             UserError: nothing of the screen is left that it can see, it wants a screen that is not laid out, or
                 there is no voice in the driver's language.
+            SetupError: it is to get sound, and the extra ``voice`` is missing.
         """
         if self.lean and self.channels & SCREEN:
             raise UserError("a lean session has no screen; leave screenshot and elements out of the channels")
@@ -60,6 +62,8 @@ class SessionSetup:
         hear, language = self.conditions.hear, self.conditions.language
         if hear.is_by_ear and language is not Language.ENGLISH:
             raise UserError(f"--hear {hear} has no voice in {language.words}; give --language en, or --hear text")
+        if hear is Hearing.AUDIO and not is_installed():
+            raise SetupError(f"--hear audio needs the extra voice: {install_hint('voice')}, or give --hear cabin")
         if self.channels & SCREEN and not self.given & SCREEN and not self.conditions.interface.calls:
             (only,) = self.channels & SCREEN
             raise UserError(

@@ -23,12 +23,10 @@ from automotive_cosim.contracts import (
     STANDING_BELOW_MPS,
     DrivingState,
     Limit,
-    LimitSource,
 )
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Rule, Status
-from automotive_cosim.geo.text import KM_PER_MILE
 
 EQUAL_UP_TO_KMH = 1.0
 """Tolerance above the limit (Regulation (EU) 2021/1958, annex I)."""
@@ -60,9 +58,6 @@ MEDIA_SOURCE = "Vehicle.Cabin.Infotainment.Media.Played.Source"
 
 MOVING_PICTURES = ("TV", "DVD")
 """Media sources that show moving pictures, as VSS values."""
-
-SIGN = "posted"
-"""Id of the rule if a sign sets the limit."""
 
 
 class ViolationKind(StrEnum):
@@ -203,45 +198,6 @@ def _breaches(state: Observed) -> Iterator[_Breach]:
 # --- speed ------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class BindingLimit:
-    """The limit that applies at one instant, and what says so."""
-
-    limit: Limit
-    """From a sign or by law, always with a speed."""
-    rule: str
-    text: str
-    law: str
-    status: Status
-
-    @property
-    def kmh(self) -> float:
-        """The speed in km/h."""
-        assert self.limit.kmh is not None
-        return self.limit.kmh
-
-
-def binding_limit(context: GeoContext) -> BindingLimit | None:
-    """The lowest limit that certainly applies: the sign's, else the law's; lowered by weather, light or hour.
-
-    A sign is lowered only by rules that also lower signs (``caps``). None if no limit is known or there is none.
-    """
-    here = context.road.limit
-    signed = here.is_posted
-    found: list[BindingLimit] = []
-    if here.posted_mps is not None:
-        words = f"{here.words} {context.road.name or 'this road'}"
-        found.append(BindingLimit(here, SIGN, words, "sign", Status.VERIFIED))
-    elif not signed and context.default_limit is not None:
-        found += _of_rule(context.default_limit)
-    for reduced in context.reduced_limits:
-        if reduced.certain and (reduced.rule.caps or not signed):
-            found += _of_rule(reduced)
-    if signed and context.default_limit is not None and context.default_limit.rule.caps:
-        found += _of_rule(context.default_limit)
-    return min(found, key=lambda limit: limit.kmh, default=None)
-
-
 def limit_at(context: GeoContext, driving: DrivingState | None = None) -> Limit:
     """The speed limit that binds: the sign's or the law's, never what a map assumes; ``NO_LIMIT`` if none is known.
 
@@ -250,7 +206,7 @@ def limit_at(context: GeoContext, driving: DrivingState | None = None) -> Limit:
         driving: a state near that instant, on whose road the limit is wanted; None takes the context's own.
     """
     elsewhere = driving is not None and _road_of(driving) != _road_of(context.driving)
-    bound = binding_limit(replace(context, driving=driving) if driving is not None and elsewhere else context)
+    bound = (replace(context, driving=driving) if driving is not None and elsewhere else context).binding_limit
     return NO_LIMIT if bound is None else bound.limit
 
 
@@ -258,15 +214,8 @@ def _road_of(driving: DrivingState) -> tuple[str, Limit]:
     return driving.road.edge_id, driving.road.limit
 
 
-def _of_rule(applied: AppliedRule) -> Iterator[BindingLimit]:
-    value, rule = applied.value, applied.rule
-    if isinstance(value, float):
-        kmh = value * KM_PER_MILE if rule.unit == "mph" else value
-        yield BindingLimit(Limit(kmh / KMH_PER_MPS, LimitSource.LAW), rule.id, rule.text, rule.law, rule.status)
-
-
 def _speeding(state: Observed) -> Iterator[_Breach]:
-    limit = binding_limit(state.context)
+    limit = state.context.binding_limit
     speed_kmh = state.driving.speed_mps * KMH_PER_MPS
     if limit is None or speed_kmh < ISA_FROM_KMH or speed_kmh <= limit.kmh + EQUAL_UP_TO_KMH:
         return

@@ -14,6 +14,7 @@ from functools import cached_property
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
 from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, said_at
+from automotive_cosim.geo.binding import BindingLimit, binding
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.geo.rulefacts import RuleFacts
@@ -163,6 +164,11 @@ class GeoContext:
     def default_limit(self) -> AppliedRule | None:
         """The legal limit for this road if it is certain."""
         return self.default_limits[0] if len(self.default_limits) == 1 and self.default_limits[0].certain else None
+
+    @cached_property
+    def binding_limit(self) -> BindingLimit | None:
+        """The lowest limit that certainly applies (``binding.binding``)."""
+        return binding(self.road, self.default_limit, self.reduced_limits)
 
     @property
     def speed_unit(self) -> str:

@@ -16,12 +16,16 @@ uint8 (512,) | |
 | ``gps`` | ``available``, ``fix``, ``lon_lat``, ``accuracy_m``, ``age_s``, ``heading_deg`` | |
 | ``connectivity`` | ``online``, ``kind``, ``signal`` | |
 | ``context`` | uint8 (8192,) | the geo-context as text |
+| ``sound`` | ``count``, ``length``, ``samples`` int16 (480000,) | with ``hear="audio"``: what was said, the \
+latest half a minute of it at 16 kHz, zero-padded |
 
 Action (``Dict``): see ``action_space``; every sample is well formed.
 """
 
 from __future__ import annotations
 
+import io
+import wave
 from collections.abc import Iterable, Mapping
 from copy import copy
 from dataclasses import fields
@@ -62,6 +66,8 @@ T = TypeVar("T")
 
 GOAL_BYTES, SAID_BYTES, FEEDBACK_BYTES, CONTEXT_BYTES, ABOARD_BYTES = 512, 1024, 1024, 8192, 512
 NOTICED_BYTES = 2048
+SOUND_SAMPLES, MOST_SOUNDS = 480_000, 1000
+"""Half a minute, which is what recognisers take at once; and as far as utterances are counted."""
 MAX_ELEMENTS, ELEMENT_TEXT_BYTES, RESOURCE_ID_BYTES = 128, 128, 64
 KINDS = ("View", "TextView", "Button", "Switch", "SeekBar", "EditText", "ImageView", "ListView", "RadioButton")
 FLAGS = tuple(field.name for field in fields(Element) if field.name.startswith("is_"))
@@ -97,8 +103,19 @@ class _AnyText(spaces.Text):
         return isinstance(x, str) and len(x) <= self.max_length
 
 
-def observation_space(channels: frozenset[Channel], width: int, height: int) -> spaces.Dict:
+def observation_space(
+    channels: frozenset[Channel], width: int, height: int, *, with_sound: bool = False
+) -> spaces.Dict:
     """The observation space of an agent with these channels; see the module's table."""
+    heard: dict[str, spaces.Space[Any]] = {
+        "sound": spaces.Dict(
+            {
+                "count": spaces.Discrete(MOST_SOUNDS + 1),
+                "length": spaces.Discrete(SOUND_SAMPLES + 1),
+                "samples": spaces.Box(-32768, 32767, (SOUND_SAMPLES,), np.int16),
+            }
+        )
+    }
     known: dict[Channel, spaces.Space[Any]] = {
         Channel.SCREENSHOT: _bytes_space(height, width, 3),
         Channel.ELEMENTS: _elements_space(),
@@ -124,6 +141,7 @@ def observation_space(channels: frozenset[Channel], width: int, height: int) -> 
             ),
         }
         | {str(channel): space for channel, space in known.items() if channel in channels}
+        | (heard if with_sound else {})
     )
 
 
@@ -233,6 +251,8 @@ def encode(observation: Observation, channels: frozenset[Channel]) -> dict[str, 
         }
     if Channel.CONTEXT in channels:
         encoded["context"] = _bytes(observation.context or "", CONTEXT_BYTES)
+    if observation.sounds:
+        encoded["sound"] = _encode_sounds(observation.sounds)
     return encoded
 
 
@@ -420,6 +440,29 @@ def _decode_gps(encoded: Mapping[str, Any]) -> GpsFix | None:
 
 def _decode_connectivity(encoded: Mapping[str, Any]) -> Connectivity:
     return Connectivity(bool(encoded["online"]), NETWORKS[int(encoded["kind"])], int(encoded["signal"]))
+
+
+# --- sound ------------------------------------------------------------------------------------------------
+
+
+def _encode_sounds(sounds: tuple[bytes, ...]) -> dict[str, Any]:
+    """The latest that fit, in order; of a longer one alone its beginning."""
+    kept, length = list[npt.NDArray[np.int16]](), 0
+    for sound in reversed(sounds):
+        samples = _samples(sound)
+        if kept and length + len(samples) > SOUND_SAMPLES:
+            break
+        kept.insert(0, samples[:SOUND_SAMPLES])
+        length += len(kept[0])
+    whole = np.zeros(SOUND_SAMPLES, np.int16)
+    whole[:length] = np.concatenate(kept)
+    return {"count": min(len(sounds), MOST_SOUNDS), "length": length, "samples": whole}
+
+
+@lru_cache(maxsize=64)
+def _samples(wav: bytes) -> npt.NDArray[np.int16]:
+    with wave.open(io.BytesIO(wav)) as file:
+        return np.frombuffer(file.readframes(file.getnframes()), "<i2").astype(np.int16)
 
 
 # --- texts ------------------------------------------------------------------------------------------------

@@ -65,7 +65,7 @@ from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode, replayed
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
-from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violations
+from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, violations
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.first_sight import undeclared
@@ -271,7 +271,7 @@ def optional(ground: Ground, right: Played) -> Wrong:
     """Fills in whatever an alert of the reference solution may take besides, with what is true."""
     start, end = right.moments[0], right.moments[-1]
     given = end.commands["alerts"][len(start.commands["alerts"]) :]
-    limit = binding_limit(end.context)
+    limit = end.context.binding_limit
     advice = round(end.driving.speed_mps * KMH_PER_MPS) if limit is None else round(limit.kmh)
     for at, alert in enumerate(given):
         for fields in ({"severity": "critical"}, {"text": "Careful, please"}, {"speed_kmh": float(advice)}):
@@ -354,7 +354,7 @@ def lawful(ground: Ground, right: Played) -> Wrong:
             yield f"breaks {found.rule}: {found.text}"
     start, end = right.moments[0], right.moments[-1]
     engaged = end.signals[ADAS.CRUISE_ACTIVE.path] and not start.signals[ADAS.CRUISE_ACTIVE.path]
-    limit, set_kmh = binding_limit(start.context), end.signals[ADAS.CRUISE_SPEED.path]
+    limit, set_kmh = start.context.binding_limit, end.signals[ADAS.CRUISE_SPEED.path]
     if engaged and limit is not None and limit.status is Status.VERIFIED and set_kmh > limit.kmh + EQUAL_UP_TO_KMH:
         yield f"has cruise control hold {set_kmh:g} km/h where the limit is {limit.kmh:.0f} ({limit.rule})"
 

@@ -10,15 +10,21 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.contracts.given import Language, Order
+from automotive_cosim.drives.errands import every, words_about
 from automotive_cosim.drives.order import ordered
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON
+from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.parameters import FromCockpit
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
@@ -29,8 +35,8 @@ BATCH = 20
 
 
 def wanted(seeds: int) -> Iterator[str]:
-    """Everything that is said at these seeds, apart from wishes with content of the cockpit; what is said
-    everywhere, and the suite of the cabin, come first."""
+    """Everything that is said at these seeds in the tasks' own scenarios, and on drives; what is said everywhere,
+    and the suite of the cabin, come first."""
     yield from (NEUTRAL, PARDON)
     for order in Order:
         for with_errands in (False, True):
@@ -39,22 +45,42 @@ def wanted(seeds: int) -> Iterator[str]:
     for number in range(seeds):
         for task in tasks:
             yield from said_in(task, number)
+    for errand in every():
+        yield from words_about(errand, Language.ENGLISH)
 
 
 def said_in(task: Task, number: int) -> Iterator[str]:
     """The wish, remarks and answers of an instance of a task."""
     for name in task.halves:
-        with suppress(UnknownNameError):
-            instance = draw(task, name, number)
-            half = instance.half
-            yield from (instance.goal, *(each.text for each in half.says), *(each.reply for each in half.topics))
+        yield from draw(task, name, number, _content(task, name, number)).spoken
+
+
+def _content(task: Task, half: str, number: int) -> Mapping[str, tuple[str, ...]] | None:
+    """People, places and music of the cockpit, if the task draws any."""
+    if not any(isinstance(choices, FromCockpit) for choices in task.parameters.values()):
+        return None
+    start = draw(task, half, number).half.start
+    rng = Draws(task.id, number).rng(Purpose.CONTENT)
+    return Cockpit(
+        _roads(start.scenario),
+        rng=rng,
+        aboard=start.aboard,
+        signals=start.signals,
+        arrivals=start.arrivals,
+        lacks=start.lacks,
+    ).content
+
+
+@cache
+def _roads(scenario: str) -> RoadNetwork:
+    return network_of(open_scenario(scenario)).map
 
 
 def missing(seeds: int, path: Path = table.TABLE) -> list[str]:
     """The pieces that the table has not, in the order in which they are needed."""
     known = table.read(path)
-    every = dict.fromkeys(piece for text in wanted(seeds) for piece in table.pieces(text))
-    return [piece for piece in every if piece not in known and "<" not in piece]
+    pieces = dict.fromkeys(piece for text in wanted(seeds) for piece in table.pieces(text))
+    return [piece for piece in pieces if piece not in known]
 
 
 def main() -> None:

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit
+from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.place import Atlas, Place, shipped
 from automotive_cosim.geo.rules import Jurisdiction, Rule, Status, Value
@@ -94,7 +94,7 @@ def _elsewhere(half: Half, moment: Moment) -> Iterator[str]:
 
 
 def _other_limit(half: Half, moment: Moment, under: GeoContext) -> Iterator[str]:
-    here, there = binding_limit(moment.context), binding_limit(under)
+    here, there = moment.context.binding_limit, under.binding_limit
     if there is None or there.status is not Status.VERIFIED:
         return
     speed_kmh = moment.driving.speed_mps * KMH_PER_MPS

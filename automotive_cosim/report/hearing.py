@@ -5,19 +5,18 @@ from __future__ import annotations
 import io
 import wave
 from collections.abc import Sequence
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import SetupError, UserError, install_hint
+from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
 from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import SOUNDS, sound
 from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.report.plot import BOTTOM, LEFT, RIGHT, TOP
 from automotive_cosim.voice.cabin import driver_snr_db
-from automotive_cosim.voice.engines import RATE_HZ, from_wav
+from automotive_cosim.voice.engines import RATE_HZ, from_wav, is_installed
 from automotive_cosim.voice.table import sounding
 
 QUIETEST_DB, LOUDEST_DB, LINE_DB = 30, 110, 20
@@ -38,7 +37,7 @@ def utterances(step: Json, goal: str) -> list[Json]:
 
 def can_sound(folder: Path, step: int, number: int) -> bool:
     """Whether ``sounded`` has it, or can make it with the extra ``voice``."""
-    return sound(folder, step, number).is_file() or find_spec("piper") is not None
+    return sound(folder, step, number).is_file() or is_installed()
 
 
 def sounded(folder: Path, step: int, number: int, uttered: Json) -> bytes:
@@ -47,7 +46,8 @@ def sounded(folder: Path, step: int, number: int, uttered: Json) -> bytes:
 
     Raises:
         SetupError: there is none, and the extra ``voice`` is missing.
-        UserError: that file is no WAV file, or the voice could not say it.
+        UserError: that file is no WAV file.
+        InfrastructureError: the voice could not say it.
     """
     path = sound(folder, step, number)
     if not path.is_file():
@@ -70,7 +70,7 @@ def with_sounds(folder: Path, steps: Sequence[Json], goal: str) -> tuple[list[Js
                     write_whole(make_folder(folder, SOUNDS) / path.name, wav)
             except SetupError:
                 why = f"After `{install_hint('voice')}`, the pages of `serve` and of further runs play it."
-            except UserError as error:
+            except (UserError, InfrastructureError) as error:
                 why = f"No sound: {error}."
             told.append(uttered | {"at_s": step["at_s"], "wav": small(wav) if wav else b""})
     return told, why

@@ -36,10 +36,12 @@ LACKING = frozenset({"goal", "in_time", "declared"})
 REDRAWS, LEAST_REDRAWS = 4, 2
 """Further draws of both, with and without, where leaving an act out changed anything on the road; as many as the
 fewer where it is no more than chance."""
-REDRAWN = 8.0
-"""How long redraws and pairs take at most, as a multiple of the trial, so that many acts cost a few times it."""
-PAIRED = 4.0
-"""How much of it is left for acts that may only matter together."""
+DRIVEN, LEAST_REDRAWN = 12.0, 4.0
+"""How much is driven in all, as a multiple of the trial, so that twelve acts cost three times it; and what
+redraws and pairs may take even of many acts."""
+PAIRED = 3.0
+"""How much of it pairs take at most; there are none unless all acts that change nothing alone do so together in a
+redraw, too."""
 TOGETHER_S, MOST_PAIRS = 60.0, 15
 """Two acts that change nothing alone are left out together if they are no farther apart; the nearest first."""
 
@@ -98,6 +100,11 @@ def sentence(effects: Sequence[ActEffect]) -> str:
     """What was found, in a sentence: of the acts, those that changed the verdict or the road."""
     acts, failed = [each for each in effects if each.steps], culprit(effects)
     beside = f" What made it fail: {failed}." if failed else ""
+    routes = [each for each in effects if each.act not in (NO_ACT, LATE_ACT)]
+    if routes and not acts:
+        count = sum(not each.is_neutral for each in routes)
+        of = counted(len(routes), "route beside the kept one", "routes beside the kept ones")
+        return f"{count} of {of}, each driven from the same traffic, changed more than chance does."
     if not acts:
         return f"The agent commanded nothing: what happened is the do-nothing run.{beside}"
     changed = [each for each in acts if not each.is_neutral]
@@ -130,13 +137,15 @@ def culprit(effects: Sequence[ActEffect], kinds: Collection[str] = ()) -> str:
 def effects(forks: Forks) -> list[ActEffect]:
     """What each act changed, and of those that changed nothing, each pair that did, no act in two of them."""
     length_s = forks.moments[-1].time_s - forks.moments[0].time_s
-    found, left_s = _redrawn(forks, [[act] for act in forks.acts], REDRAWN * length_s)
+    left_s = DRIVEN * length_s - sum(forks.length_s([act]) for act in forks.acts)
+    found, left_s = _redrawn(forks, [[act] for act in forks.acts], max(left_s, LEAST_REDRAWN * length_s))
     idle = [act for act, effect in zip(forks.acts, found, strict=True) if effect.is_neutral]
-    if len(idle) < 2:
+    if len(idle) < 2 or left_s <= 0:
         return found
-    (together,), left_s = _redrawn(forks, [idle], min(left_s, PAIRED * length_s))
+    (together,), _ = _redrawn(forks, [idle], min(left_s, length_s))
     if together.is_neutral:
         return found
+    left_s = min(left_s, PAIRED * length_s)
     near = [pair for pair in combinations(idle, 2) if pair[1].time_s - pair[0].time_s <= TOGETHER_S]
     near.sort(key=lambda pair: (pair[1].time_s - pair[0].time_s, pair[0].time_s))
     told = set[int]()

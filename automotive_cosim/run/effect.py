@@ -125,8 +125,12 @@ def weighed(draws: Sequence[FigurePairs]) -> tuple[FigurePairs, FigurePairs]:
 
 def compared(forks: Forks, left: Sequence[ForkedAct], draw: int) -> FigurePairs:
     """Every figure of a draw, with acts and without them."""
-    one, other = (figures_of(moments, is_drive=forks.is_drive) for moments in forks.both(left, draw))
-    return {name: (one[name], other[name]) for name in one if name in other}
+    key = tuple(act.step for act in left), draw
+    if key not in forks.figures:
+        one, other = (figures_of(moments, is_drive=forks.is_drive) for moments in forks.both(left, draw))
+        forks.figures[key] = {name: (one[name], other[name]) for name in one if name in other}
+    found: FigurePairs = forks.figures[key]
+    return found
 
 
 def judged_without(forks: Forks, left: Sequence[ForkedAct], draws: Collection[int]) -> tuple[float | None, str]:
@@ -188,7 +192,9 @@ def _verdict(forks: Forks, left: Sequence[ForkedAct], draws: Collection[int]) ->
     is_other: list[bool] = []
     for draw in draws:
         mine, others = forks.both(left, draw)
-        found.append((_parts(forks, mine, frozenset()), _parts(forks, others, steps)))
+        recorded = forks.session.verdict.parts.items()
+        with_them = _parts(forks, mine, frozenset()) if draw else {name: part.ok for name, part in recorded}
+        found.append((with_them, _parts(forks, others, steps)))
         one, other = found[-1]
         is_other.append(all(one.values()) is not all(other.values()))
         if not is_other[0]:  # whatever further draws say

@@ -131,6 +131,8 @@ class Forks(TrialObserver):
         self._forks: list[TrialFork] = []
         self._given = self._asked = 0
         self._seen: dict[tuple[int, frozenset[int], int], list[Moment]] = {}
+        self.figures: dict[tuple[tuple[int, ...], int], Any] = {}
+        """What was measured of acts, by their steps and the draw."""
         self._prints: dict[int, str] = {}
         """Of the traffic of the trial, at the end of each step (``fingerprint``)."""
 

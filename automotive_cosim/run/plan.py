@@ -17,7 +17,7 @@ from automotive_cosim.agents import MODELLED, Agent, AgentSettings, is_remote, m
 from automotive_cosim.cockpit import tree
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import Clock
+from automotive_cosim.contracts.given import Clock, Hearing
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
@@ -37,9 +37,11 @@ from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.settings import ALL_SUITES, BOTH, HIDDEN, LIVE, SUITES, EvaluationSettings
 from automotive_cosim.run.trial import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.voice.table import lacking
 
 BOARD = Path(__file__).with_name("board.toml")
 """The plan of the leaderboard's first table."""
@@ -230,6 +232,14 @@ class Plan(EvaluationSettings):
         if not any(conditions.hides_pictures for conditions in combined(self)):
             return ()
         return tuple(task_id for task_id in self._chosen() if CATALOGUE[task_id].needs_picture)
+
+    def unheard(self) -> int:
+        """How many episodes would end at once because what is said can neither be looked up nor recognised."""
+        heard = (job for job in self.episodes() if job.conditions.hear is Hearing.CABIN)
+        drawn = (
+            draw(job.entry, job.half, job.seed, held_out=job.held_out, redrawn=job.redrawn).spoken for job in heard
+        )
+        return sum(bool(lacking(text for text in spoken if "<" not in text)) for spoken in drawn)
 
     def _nowhere(self) -> str:
         if not self._chosen():

@@ -26,9 +26,9 @@ def installed(names: Iterable[str]) -> dict[str, str]:
 
 
 def ran_with(manifest: Json) -> str:
-    """The version of the suite that ran an evaluation; ``unknown`` if its manifest does not say."""
+    """The version of the suite that ran an evaluation or one trial; ``unknown`` if its manifest does not say."""
     try:
-        return str(manifest["starts"][0]["versions"][SUITE])
+        return str((manifest["starts"] or [manifest])[0]["versions"][SUITE])
     except (LookupError, TypeError):
         return "unknown"
 

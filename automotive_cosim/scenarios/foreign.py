@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
+from functools import lru_cache
 from pathlib import Path
 
 from automotive_cosim.contracts import Weather
@@ -20,6 +21,7 @@ from automotive_cosim.scenarios.routes import drawn_trips
 from automotive_cosim.traffic.additional import read_mapped
 from automotive_cosim.traffic.file_check import vet
 from automotive_cosim.traffic.georeference import middle
+from automotive_cosim.traffic.keeper import read_once
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import (
     INPUTS,
@@ -29,6 +31,7 @@ from automotive_cosim.traffic.options import (
     SUMO_STEP_S,
     Configuration,
     read_configuration,
+    stamp,
     stated_and_set,
 )
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
@@ -71,7 +74,23 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     Raises:
         ScenarioError: the files are missing or invalid, or no two roads are connected.
     """
+    return _as_it_is(path, to_be_moved, stamp(read_configuration(path)))
+
+
+@lru_cache(maxsize=8)
+def _as_it_is(path: Path, to_be_moved: bool, files: tuple[object, ...]) -> Scenario:
+    """As ``foreign_scenario``; kept while its files are as they are, for to read a city takes seconds."""
     configuration = read_configuration(path)
+    if not to_be_moved and configuration.files.keys() == {"net-file"}:
+        # what additional and route files include is not known before they are read
+        return read_once(
+            {path.absolute(), configuration.net.absolute()},
+            lambda: _read(path, configuration, to_be_moved=to_be_moved),
+        )
+    return _read(path, configuration, to_be_moved=to_be_moved)
+
+
+def _read(path: Path, configuration: Configuration, *, to_be_moved: bool) -> Scenario:
     reader = NetworkReader(configuration.net)
     vet(configuration.net, reader, FORM)
     network = reader.network()

@@ -40,6 +40,8 @@ class PeoplePlan:
     """Seed of the orders."""
     scenario: str | None = None
     """Scenario to use instead of the tasks' own."""
+    detection: bool = False
+    """Whether people also answer a red dot every few seconds (``serve.detection``)."""
 
     @property
     def plan(self) -> Plan:

@@ -31,7 +31,7 @@ from urllib.parse import parse_qs, unquote, urlsplit
 
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.errors import CosimError, UnknownNameError, UserError
 from automotive_cosim.formats.files import parse_json, read_bytes
 from automotive_cosim.formats.layout import road_view, screenshot
 from automotive_cosim.safety.page import PAGE
@@ -141,6 +141,7 @@ class Site:
             for pattern, route in (
                 (r"/api/play", lambda _, query: self._scene(self._own_game, query)),
                 (r"/api/play/screen", lambda _, __: _screen(self._own_game)),
+                (r"/api/study/seen", lambda _, __: _json(self._studied.seen())),
                 (r"/api/study/rows\.(?P<kind>csv|json)", self._rows),
                 (r"/api/runs", lambda _, __: _json(content.runs())),
                 (rf"/api/runs/{run}{episode}", lambda path, _: _json(content.run(path["run"], path["episode"]))),
@@ -197,7 +198,7 @@ class Site:
                     return route(found.groupdict(), query)
                 except (NotHereError, UnknownNameError) as error:
                     raise _RefusedRequestError(HTTPStatus.NOT_FOUND, str(error)) from error
-                except (UserError, OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+                except (CosimError, OSError, ValueError, LookupError, TypeError, AttributeError) as error:
                     why = f"this record cannot be read: {error}"
                     raise _RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, why) from error
         raise _RefusedRequestError(HTTPStatus.NOT_FOUND, "there is no such page")
@@ -251,6 +252,8 @@ class Site:
                 study.begin(seat)
             case "answer":
                 study.answer(seat, asked)
+            case "detected":
+                study.detect(seat, asked)
             case _:
                 raise _RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
         return {}

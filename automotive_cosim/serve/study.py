@@ -2,7 +2,8 @@
 
 The folder is an evaluation of the agent ``human``, which every report reads, with one more file:
 
-    log.jsonl    a line whenever an episode begins or ends, or the questions after it are answered
+    log.jsonl    a line whenever an episode begins or ends, a stimulus is detected or missed (``detection``), or the
+                 questions after an episode are answered
 
 Both are on disk before the study continues, so that a killed server resumes where it was; the running episode
 starts again, and the export says so.
@@ -14,7 +15,7 @@ import json
 import secrets
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import datetime
@@ -30,6 +31,7 @@ from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.store import opened
 from automotive_cosim.serve.dealing import PeoplePlan, deal
+from automotive_cosim.serve.detection import PHASES, TOLD, detected, figures
 from automotive_cosim.serve.play import Game
 from automotive_cosim.traffic.fork import Simulations
 
@@ -71,6 +73,7 @@ class PeopleStudy:
         jobs = whole.episodes()
         self.name = folder.name
         self.folder = folder
+        self._detects = plan.detection
         self._orders = deal(jobs, plan.people, plan.order_seed)
         self._ends = ExitStack()
         self._store = self._ends.enter_context(opened(folder, whole.as_json(), EpisodeRow, planned=len(jobs)))
@@ -88,6 +91,7 @@ class PeopleStudy:
                 "name": self.name,
                 "questions": [{"name": name, "text": text} for name, text in QUESTIONS.items()],
                 "scale": list(SCALE),
+                "detection": TOLD if self._detects else None,
                 "people": [
                     {"name": name, "done": self._done(name), "planned": len(order)}
                     for name, order in self._orders.items()
@@ -189,6 +193,25 @@ class PeopleStudy:
                 raise UserError("there is no question to answer now")
             self._note("answered", job, {name: answers[name] for name in QUESTIONS})
 
+    def detect(self, secret: str, asked: Json) -> None:
+        """Takes what came of a stimulus of the episode that a person plays.
+
+        Raises:
+            UserError: the seat is empty, nothing is played or to be detected, or it is no reaction.
+        """
+        person = self.seat(secret).person
+        came = detected(asked)
+        with self._lock:
+            job = self._next(person)
+            if not self._detects or job is None or not self._of("begun", job):
+                raise UserError("there is nothing to detect now")
+            self._note("detected", job, came)
+
+    def seen(self) -> Json:
+        """Hits and reactions of each person, by phase; nothing without the task."""
+        with self._lock:
+            return {name: self._seen(order) for name, order in self._orders.items()} if self._detects else {}
+
     def export(self) -> list[Json]:
         """A line for each planned episode, in each person's order: row, answers and times."""
         with self._lock:
@@ -216,6 +239,19 @@ class PeopleStudy:
         rows = self._store.rows
         judged = (job for job in self._orders[person] if job.id in rows and rows[job.id].success is not None)
         return next((job for job in judged if not self._of("answered", job)), None)
+
+    def _seen(self, jobs: Sequence[EpisodeSetup]) -> Json:
+        """Hits and reactions of these episodes, each since it was begun last, by phase."""
+        if not self._detects:
+            return {}
+        came: dict[str, list[Json]] = {job.id: [] for job in jobs}
+        for event in self._events:
+            if event["id"] in came and event["kind"] == "begun":
+                came[event["id"]] = []
+            elif event["id"] in came and event["kind"] == "detected":
+                came[event["id"]].append(event)
+        events = [event for each in came.values() for event in each]
+        return {phase: figures(events, phase) for phase in PHASES}
 
     def _done(self, person: str) -> int:
         return sum(job.id in self._store.rows for job in self._orders[person])
@@ -257,6 +293,11 @@ class PeopleStudy:
             "ended": ended[-1]["at"] if ended else None,
             "answered": answers.get("at"),
             **{name: answers.get(name) for name in QUESTIONS},
+            **{
+                f"{phase}_{name}": value
+                for phase, seen in self._seen([job]).items()
+                for name, value in seen.items()
+            },
         }
 
 

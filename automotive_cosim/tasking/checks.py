@@ -350,6 +350,17 @@ def not_asked(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
     return not questions(start, now)
 
 
+@goal(lambda classes: f"no question but on a {' or '.join(classes)} road", writes=lambda classes: frozenset())
+def asked_on(start: Moment, now: Moment, trace: Sequence[Moment], classes: tuple[str, ...]) -> bool:
+    """Every question to the driver was begun on a road of these classes, such as where nobody has to merge."""
+    begun = [len(questions(start, moment)) for moment in trace]
+    return all(
+        moment.driving.road.road_class in classes
+        for before, count, moment in zip([0, *begun], begun, trace, strict=False)
+        if count > before
+    )
+
+
 def asked_in(check: Check) -> Iterator[Topic]:
     """The topics of a goal that the driver has to be asked about."""
     if isinstance(check, NamedCheck) and check.name in ("asked_first", "asked_back"):

@@ -25,6 +25,8 @@ TOLD_HEARD = "Words are heard in the noise of the cabin and may be wrong; the dr
 """What an agent that hears is told at first."""
 PARDON = "What did you say?"
 """What the driver says if he did not understand the car."""
+TALKED_OVER = "The driver talked over you and took in none of it."
+"""What the agent is told if he did."""
 LOOK_FIRST = "The calendar and the memos may say it; what the car doesn't know, ask me."
 """What the driver adds to a wish of the suite ``clarify``, which is in English alone: where one may look."""
 ROUNDING_S = 1e-9
@@ -82,6 +84,8 @@ class Says:
     """Keys of ``Moment.commands``, one of which must have changed since the hand-over."""
     after: int = 0
     """Number of questions that the driver must have answered."""
+    over_s: float = 0.0
+    """Seconds into words of the agent at which he talks over them; 0 if he waits until nobody speaks."""
     unchanged: frozenset[str] = frozenset()
     """Keys of ``Moment.commands``, none of which may have changed since then: a wish that is said again."""
 
@@ -93,6 +97,7 @@ class Says:
             f"while {' and '.join(sorted(self.unchanged))} has not changed" if self.unchanged else "",
             f"after {self.after} answers" if self.after else "",
             f"once {self.when}" if self.when else "",
+            f"{self.over_s:g} s into what the car says" if self.over_s else "",
         )
         return " and ".join(filter(None, told)) or "at once"
 
@@ -131,6 +136,11 @@ class Question:
         return spoken_s(self.text, self.reply)
 
 
+def words_of(said: Iterable[str]) -> int:
+    """How many words were said in all."""
+    return math.ceil(sum(map(_words, said)))
+
+
 def untold(said: Iterable[str], tells: Iterable[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
     """What of it the driver was not told.
 
@@ -165,9 +175,10 @@ def asks_again(question: str) -> bool:
 
 
 def understood(step: Step) -> tuple[str, ...]:
-    """What the agent told the driver in a step; nothing if he did not understand it."""
+    """What the agent told the driver in a step; nothing if he did not understand it, or talked over it."""
     action = step.action
     is_told = action is not None and action.action_type is ActionType.ANSWER and PARDON not in step.said
+    is_told = is_told and (step.feedback is None or step.feedback.text != TALKED_OVER)
     return (action.text or "",) if action is not None and is_told else ()
 
 

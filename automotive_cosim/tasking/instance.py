@@ -58,6 +58,13 @@ class Instance:
         """The reference solution, with the parameters filled in."""
         return self.half.moves
 
+    @property
+    def spoken(self) -> tuple[str, ...]:
+        """Everything that may be said: the wish, remarks and answers."""
+        half = self.half
+        replies = (*(topic.reply for topic in half.topics), half.neutral)
+        return (self.goal, *(each.text for each in half.says), *replies)
+
 
 def draw(
     task: Task,

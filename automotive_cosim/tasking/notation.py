@@ -121,7 +121,7 @@ def signal_named(name: str) -> Signal[Any]:
     """
     known = signals_by_name()
     if name not in known:
-        raise UnknownNameError("signal", name, known, "automotive-cosim signals")
+        raise UnknownNameError("signal", name, known, "automotive-cosim show signals")
     return known[name]
 
 

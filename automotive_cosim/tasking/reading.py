@@ -310,7 +310,7 @@ class _Reader:
         known = hints(Half)
         made = {
             name: self._at(name, given[name], known[name], *steps)
-            for name in ("topics", "trigger", "deadline", "tells", "says", "neutral")
+            for name in ("topics", "trigger", "deadline", "tells", "most_words", "says", "neutral")
             if name in given
         }
         if "may_write" in given:

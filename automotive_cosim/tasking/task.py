@@ -226,6 +226,8 @@ class Half:
     """What he answers to any other question, which does not help."""
     tells: tuple[tuple[str, ...], ...] = ()
     """What the driver has to be told before the end, each by any of its words."""
+    most_words: int | None = None
+    """Words of all answers together that the driver has time for; None for any number."""
     says: tuple[Says, ...] = ()
     """What the driver says later, besides the wish; the order counts if several are due at once."""
 

@@ -18,7 +18,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.text import KM_PER_MILE
 from automotive_cosim.measures.following import is_near
 from automotive_cosim.tasking.checks import AlertGiven, Check
-from automotive_cosim.tasking.dialogue import untold
+from automotive_cosim.tasking.dialogue import untold, words_of
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.task import Basis, Half
 from automotive_cosim.tasking.telling import missing, told, told_value
@@ -215,6 +215,9 @@ def judge(
     if missed and verdict.declared.ok:
         lacks = "; ".join(" or ".join(words) for words in missed)
         verdict = replace(verdict, declared=Part(False, f"the driver was not told of {lacks}"))
+    most = instance.half.most_words
+    if most is not None and (count := words_of(said)) > most and verdict.declared.ok:
+        verdict = replace(verdict, declared=Part(False, f"the driver had to hear {count} words, at most {most}"))
     if failure is not None:
         verdict = replace(verdict, declared=Part(False, f"the agent failed: {failure}"))
     return verdict

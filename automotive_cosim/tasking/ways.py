@@ -102,8 +102,8 @@ def units_in(make: Make, task: Task) -> Mapping[str, str]:
     halves = [task.half(name) for name in task.halves]
     every = [str(move) for half in halves for move in chain(half.moves, *half.ways, *half.slips)]
     taken = {path for key, path in UNITS.items() for move in every if key in move}
-    figures = any(char.isdigit() for half in halves for tells in half.tells for text in tells for char in text)
-    if taken or figures:
+    told = "".join(str(text) for half in halves for tells in half.tells for text in tells)
+    if taken or any(char.isdigit() or char == "{" for char in told):  # a drawn one may be a figure
         return {}
     degrees = any("TapUntil" in move and "_temperature" in move for move in every)
     kept = {HMI.TEMPERATURE_UNIT.path} if degrees else set[str]()

@@ -39,6 +39,8 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
         yield "solution", f"{'or ' if number else ''}{way}"
     for words in half.tells:
         yield "tells", " or ".join(map(str, words))
+    if half.most_words is not None:
+        yield "tells", f"in {half.most_words} words at most"
     for topic in half.topics:
         yield "driver", f"asked about {topic.name}, says {topic.reply!r}"
     for says in half.says:

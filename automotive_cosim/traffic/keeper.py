@@ -20,13 +20,13 @@ import tempfile
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import chain
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError, SetupError, UserError
@@ -45,8 +45,13 @@ STARTS_S = 30.0
 LOOK_S = 2.0
 _PEER = struct.Struct("3i")
 
-_Wanted: TypeAlias = tuple[Setup, tuple[tuple[str, str], ...]]
-"""The traffic, and its files with their SHA-256."""
+_Files: TypeAlias = tuple[tuple[str, str], ...]
+"""Files with their SHA-256."""
+_Wanted: TypeAlias = tuple[Setup, _Files]
+"""The traffic, and its files."""
+MOST_READ = 64
+"""Scenarios without their networks: a few kilobytes each."""
+T = TypeVar("T")
 
 
 @dataclass(slots=True)
@@ -80,6 +85,8 @@ class _Keeper:
     def __init__(self, minutes: float) -> None:
         self._minutes = minutes
         self._kept: OrderedDict[_Wanted, _Kept] = OrderedDict()
+        self._read: OrderedDict[_Files, object] = OrderedDict()
+        """What was read from files, by their content."""
         self._lock = threading.Lock()
         self._used_s = time.monotonic()
         self._most_bytes = MEMORY_SHARE * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
@@ -113,6 +120,12 @@ class _Keeper:
                 self._minutes = given
                 with self._lock:
                     channel.send([each.line() for each in self._kept.values()])
+                return
+            if what == "read":
+                channel.send(self._read.get(given))
+                self._read[given] = channel.receive()
+                if len(self._read) > MOST_READ:
+                    self._read.popitem(last=False)
                 return
             try:
                 self._copy(given, channel)
@@ -155,6 +168,24 @@ def started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> 
         with suppress(ClosedError, OSError, SetupError):  # there is none, or not one of one's own
             return _copied(setup, progress, timeout_s)
     return RemoteProcess.start(setup, progress, timeout_s)
+
+
+def read_once(files: Iterable[Path], read: Callable[[], T]) -> T:
+    """What is read from some files and nothing else: the keeper, if there is one, says what it was the last time.
+
+    Args:
+        files: all that is read.
+        read: reads them; small, and the same for the same content.
+    """
+    with suppress(ClosedError, OSError, SetupError), _connected() as connection:
+        channel = MessageChannel(connection)
+        channel.send(("read", _digests(files)))
+        found: T | None = channel.receive()
+        if found is None:
+            found = read()
+        channel.send(found)
+        return found
+    return read()
 
 
 def keep(minutes: float) -> list[str]:
@@ -202,7 +233,11 @@ def _copied(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> 
 def _wanted(setup: Setup) -> _Wanted:
     configuration = read_configuration(setup.scenario.config)
     files = {configuration.path, configuration.net, *chain.from_iterable(configuration.files.values())}
-    return setup.traffic, tuple((str(path), file_sha256(path)) for path in sorted(files))
+    return setup.traffic, _digests(files)
+
+
+def _digests(files: Iterable[Path]) -> _Files:
+    return tuple((str(path), file_sha256(path)) for path in sorted(files))
 
 
 def _home() -> Path:

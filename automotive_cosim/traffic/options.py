@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, timedelta
+from itertools import chain
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -215,6 +216,13 @@ def read_configuration(path: Path) -> Configuration:
         tuple(reader.ignored),
         tuple(reader.parallel),
     )
+
+
+def stamp(configuration: Configuration) -> tuple[tuple[Path, int, int], ...]:
+    """Size and time of change of each file that it names, to tell whether they are as they were read."""
+    files = (configuration.path, configuration.net, *chain.from_iterable(configuration.files.values()))
+    seen = ((path.absolute(), path.stat()) for path in files)
+    return tuple((path, about.st_size, about.st_mtime_ns) for path, about in seen)
 
 
 @dataclass(slots=True)

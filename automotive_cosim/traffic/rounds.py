@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Trip
 from automotive_cosim.traffic.network import Network
-from automotive_cosim.traffic.ways import way_through, ways_from
+from automotive_cosim.traffic.ways import way_through
 
 ONWARD_M = 300.0
 """Distance to the destination at which the driver enters the next one: some twenty seconds in a town, so that there
@@ -50,6 +50,19 @@ def planned(network: Network, first: Trip, onward: Sequence[Trip]) -> Round:
     return Round(begun, tuple(parts[1:]))
 
 
+def in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:
+    """The largest set of trips that can be driven one after another, from one of them on, as ``planned`` has it;
+    empty if none leads back to its start."""
+    ways = {trip: way_through(network, (trip.from_edge, *trip.via, trip.to_edge)) for trip in trips}
+    best: tuple[Trip, ...] = ()
+    for first, way in ways.items():
+        core = _core(network, way)
+        if _within(way, core):
+            others = (trip for trip in trips if trip is not first and _within(ways[trip], core))
+            best = max(best, (first, *others), key=len)
+    return best
+
+
 def loop_with(junctions: Iterable[tuple[str, str]], edge: str) -> frozenset[str]:
     """The edges that can be reached from one and from which it can be reached again.
 
@@ -84,8 +97,7 @@ def _core(network: Network, way: Iterable[str]) -> frozenset[str]:
     seen: set[str] = set()
     for edge in way:
         if edge not in seen:
-            ahead = ways_from(network, edge).length_m.keys()
-            part = frozenset(ahead & _reached(back, edge))
+            part = frozenset(_reached(network.crossings, edge) & _reached(back, edge))
             seen |= part
             best = max(best, part, key=len)
     return best if len(best) > 1 else frozenset()
@@ -99,7 +111,7 @@ def _reversed(network: Network) -> Mapping[str, Sequence[str]]:
     return back
 
 
-def _reached(ways: Mapping[str, Sequence[str]], start: str) -> set[str]:
+def _reached(ways: Mapping[str, Iterable[str]], start: str) -> set[str]:
     reached, left = {start}, [start]
     while left:
         for following in ways.get(left.pop(), ()):

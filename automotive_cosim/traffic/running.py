@@ -38,6 +38,8 @@ class Running:
             beat: gives a sign of life, called after every step.
         """
         self.world = world
+        self.sumo: LibSumo = load_library()
+        """SUMO's own library."""
         self.convoy = Convoy(world)
         """The equipped cars in it."""
         self.watchers: list[Watcher] = []
@@ -49,11 +51,6 @@ class Running:
     def drive(self) -> EgoDrive | None:
         """The ego's drive; None before it has departed."""
         return self.convoy.first
-
-    @property
-    def sumo(self) -> LibSumo:
-        """SUMO's own library."""
-        return load_library()
 
     def watcher(self, kind: type[W]) -> W:
         """The watcher of that kind.

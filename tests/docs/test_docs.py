@@ -373,7 +373,7 @@ def test_pages_count_the_tasks_as_they_are():
     assert f"has {limits} pairs about what a car cannot do" in reference
     voice = Counter(task.id.split("_")[1] for task in CATALOGUE.of(Suite.VOICE))
     assert f"has {voice.total()} pairs in which noise in the cabin, or who spoke, decides" in reference
-    assert [f"`voice_{kind}_*` ({count})" in reference for kind, count in voice.items()] == [True] * 3
+    assert [kind for kind, count in voice.items() if f"`voice_{kind}_*` ({count})" not in reference] == []
     assert (
         f"The suite `people` has {len(CATALOGUE.of(Suite.PEOPLE))} pairs in which those aboard react" in reference
     )

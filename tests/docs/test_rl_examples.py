@@ -4,6 +4,7 @@
 """
 
 import os
+import re
 import runpy
 import subprocess
 import sys
@@ -16,7 +17,7 @@ from PIL import Image
 TOP = Path(__file__).parents[2]
 FOLDER = TOP / "docs/examples/rl"
 PYTHON = os.environ.get("AUTOMOTIVE_COSIM_RL", sys.executable)
-HERE, LEARNS = "async_vector.py", "ten_minutes.py"
+HERE, LEARNS, GAME = "async_vector.py", "ten_minutes.py", "two_ways.py"
 NEEDS = {
     "cleanrl_fleet.py": "pettingzoo",
     "cleanrl_loop.py": "torch",
@@ -28,7 +29,7 @@ NEEDS = {
 
 
 def test_every_example_is_tried():
-    assert {path.name for path in FOLDER.glob("*.py")} == {HERE, LEARNS, *NEEDS}
+    assert {path.name for path in FOLDER.glob("*.py")} == {HERE, LEARNS, GAME, *NEEDS}
 
 
 @pytest.mark.slow
@@ -52,6 +53,30 @@ def test_the_one_that_learns_measures_and_films_two_policies(monkeypatch, tmp_pa
     assert [line.partition(":")[0] for line in told if "unseen" in line] == ["before", "after"]
     with Image.open(tmp_path / "ten_minutes.webp") as film:
         assert film.n_frames > 6
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_the_game_is_learned_measured_and_filmed(monkeypatch, tmp_path, capsys):
+    """With a peak of two minutes, one day to learn from and two to measure, and one rule."""
+    pytest.importorskip("scipy")
+    text = (FOLDER / GAME).read_text("utf-8")
+    for name, smaller in {
+        "TRAINED, TESTED": "range(1), range(1000, 1002)",
+        "PASSES, DAYS, RATE": "1, 2, 0.5",
+        "PEAK": "(0.15,)",
+        "RULES": "('never',)",
+    }.items():
+        text, count = re.subn(rf"^{name} = .*$", f"{name} = {smaller}", text, flags=re.MULTILINE)
+        assert count == 1
+    monkeypatch.setattr(sys, "argv", [GAME, str(tmp_path)])
+    exec(compile(text, GAME, "exec"), {"__name__": "__main__"})
+    told = capsys.readouterr().out
+    assert "| never |" in told
+    assert "learners by optimum" in told
+    with Image.open(tmp_path / "film.webp") as film:
+        assert film.n_frames > 6
+    assert (tmp_path / "curve.png").is_file()
 
 
 @pytest.mark.slow

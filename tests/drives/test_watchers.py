@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
+from runpy import run_path
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +18,8 @@ from automotive_cosim.drives.attention import LOOK_S
 from automotive_cosim.drives.events import KINDS, DriveAct
 from automotive_cosim.drives.reading import Reader
 from automotive_cosim.drives.watchers import RulePerfect
-from tests.drives.scenes import NOON, limit, moment
+from automotive_cosim.safety.space import read_space
+from tests.drives.scenes import NOON, limit, moment, stream
 
 CAR = {
     "speed_kmh": 50.0,
@@ -51,6 +54,38 @@ def watched(drive: Sequence[Moment], **car: Any) -> list[Action]:
         changed = [change.name for change in alarm.see(drive[:count])]
         acts.append(check(watcher.act(seen(now, changed=changed, **car))))
     return acts
+
+
+SEARCH = Path(__file__).parents[2] / "docs/examples/search"
+
+
+@pytest.mark.parametrize(
+    ("fault", "scene"),
+    [
+        ("Blind", {"kmh": 70, "visibility": 200.0}),
+        ("Late", {"kmh": 70}),
+        ("Night", {"kmh": 70, "at": NIGHT}),
+        ("Wrong", {"kmh": 50, "limit": limit(30)}),
+    ],
+)
+def test_a_planted_fault_fails_where_it_says_and_nowhere_else(fault: str, scene: Any) -> None:
+    """Nor does a fault that is about blue lights alone."""
+    planted = run_path(str(SEARCH / "planted.py"))
+
+    def told_after_s(watcher: RulePerfect, **scene: Any) -> float | None:
+        drive, alarm = stream(30, **scene), Alarm()
+        for count, now in enumerate(drive, 1):
+            changed = [change.name for change in alarm.see(drive[:count])]
+            if watcher.act(seen(now, changed=changed, speed_kmh=scene["kmh"])).kind is AlertKind.SPEED:
+                return now.time_s
+        return None
+
+    right_s = told_after_s(RulePerfect(), **scene)
+    assert told_after_s(planted["Deaf"](), **scene) == right_s is not None
+    assert told_after_s(planted[fault](), **scene) == (right_s + 8.0 if fault == "Late" else None)
+    if fault != "Late":
+        assert told_after_s(planted[fault](), kmh=70) == told_after_s(RulePerfect(), kmh=70) is not None
+    assert set(read_space(SEARCH / "town.toml").rule.events) >= {"roadworks", "blue_light"}
 
 
 @pytest.mark.parametrize(

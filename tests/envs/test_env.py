@@ -12,6 +12,7 @@ from automotive_cosim.contracts import ActionType, FeedbackCode, GoalStatus, Obs
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ActionError, ScenarioError, UnknownNameError
 from automotive_cosim.interface.spaces import decode
+from automotive_cosim.voice.engines import as_wav
 
 ID = "AutomotiveCosim/Cockpit-v0"
 QUICK = {"task": "hvac_fan_max", "scenario": "grid"}
@@ -30,6 +31,21 @@ def test_check_env_has_nothing_to_say():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(env.unwrapped)
+    env.close()
+
+
+def test_the_checker_has_nothing_to_say_of_sound_either(simulations, monkeypatch):
+    wav = as_wav(np.sin(np.arange(8000) / 9).astype(np.float32))
+    monkeypatch.setattr("automotive_cosim.episode.specification.is_installed", lambda: True)
+    monkeypatch.setattr("automotive_cosim.episode.session.sounding", lambda text, snr_db: wav)
+    env = CockpitEnv(**QUICK, simulations=simulations, hear="audio")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(env, skip_render_check=True)
+    encoded, _ = env.reset(seed=0)
+    assert (encoded["sound"]["count"], encoded["sound"]["length"]) == (1, 8000)
+    encoded = env.step({"action_type": "ask_driver", "text": "Pardon?"})[0]
+    assert (encoded["sound"]["count"], encoded["sound"]["length"]) == (2, 16000)
     env.close()
 
 

@@ -18,8 +18,16 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Session, play
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource, SessionSetup
-from automotive_cosim.errors import ActionError, AgentError, NoRoomError, OutOfBudgetError, UserError
+from automotive_cosim.episode.specification import End, EpisodeSpec, Seeds, SeedSource, SessionSetup
+from automotive_cosim.errors import (
+    ActionError,
+    AgentError,
+    InfrastructureError,
+    NoRoomError,
+    OutOfBudgetError,
+    SetupError,
+    UserError,
+)
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import sha256
 from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, TOLD_HEARD, Says, Topic, spoken_s
@@ -364,6 +372,7 @@ def test_by_ear_speaking_takes_its_time_and_who_is_not_understood_is_asked_again
 
 def test_by_sound_the_agent_gets_every_word_as_sound_and_no_text(talk, monkeypatch):
     monkeypatch.setattr("automotive_cosim.episode.session.sounding", lambda text, snr_db: f"RIFF {text}".encode())
+    monkeypatch.setattr("automotive_cosim.episode.specification.is_installed", lambda: True)
     episode = talk(
         Says("From the rear left seat: Hurry up.", step=1),
         setup=replace(BLIND, conditions=Conditions(hear=Hearing.AUDIO)),
@@ -385,6 +394,22 @@ def test_words_as_text_leave_no_trace_of_the_cabin(talk):
 def test_there_is_no_voice_in_other_languages():
     with pytest.raises(UserError, match="--hear cabin has no voice in French; give --language en, or --hear text"):
         SessionSetup(conditions=Conditions(hear=Hearing.CABIN, language=Language.FRENCH))
+
+
+def test_what_cannot_be_heard_is_told_before_anything_runs(monkeypatch):
+    cabin, audio = (Conditions(hear=each) for each in (Hearing.CABIN, Hearing.AUDIO))
+    for module in ("voice.engines", "episode.specification"):
+        monkeypatch.setattr(f"automotive_cosim.{module}.is_installed", lambda: False)
+    with pytest.raises(
+        SetupError, match=r"^--hear audio needs the extra voice: pip install .* or give --hear cabin$"
+    ):
+        SessionSetup(conditions=audio)
+    monkeypatch.setattr("automotive_cosim.voice.table._shipped", dict)
+    finder = SituationFinder(EpisodeSpec("media_newest_episode", conditions=cabin), simulations=None)
+    with pytest.raises(
+        InfrastructureError, match=r"^the table of what was heard does not have '.+'; .* or --hear text$"
+    ):
+        finder.find(Seeds(0, 0))
 
 
 def test_a_session_without_a_task_gets_an_answer_that_does_not_help(begin):

@@ -11,7 +11,16 @@ from hypothesis import strategies as st
 from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import UNCALLED, GpsFix
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.interface.spaces import action_space, decode, decode_action, encode, observation_space
+from automotive_cosim.interface.spaces import (
+    MOST_SOUNDS,
+    SOUND_SAMPLES,
+    action_space,
+    decode,
+    decode_action,
+    encode,
+    observation_space,
+)
+from automotive_cosim.voice.engines import as_wav
 
 SCREEN = np.zeros((720, 1280, 3), np.uint8)
 
@@ -85,3 +94,20 @@ def test_every_sample_is_a_well_formed_action():
         assert check(action) is action
         kinds.add(action.action_type)
     assert kinds == set(UNCALLED)
+
+
+def test_the_latest_that_was_said_is_in_the_sound(observation):
+    long = SOUND_SAMPLES - 1000
+    for lengths, kept in (((800,), 1), ((800, 400, 100), 3), ((long, 600, 400), 3), ((long, 601, 400), 2),
+                          ((300, SOUND_SAMPLES + 5), 1), ((9,) * (MOST_SOUNDS + 5), MOST_SOUNDS + 5)):  # fmt: skip
+        levels = [(number + 1) / 2000 for number in range(len(lengths))]
+        sounds = [np.full(length, level, np.float32) for length, level in zip(lengths, levels, strict=True)]
+        seen = dataclasses.replace(observation("x", screenshot=SCREEN), sounds=tuple(map(as_wav, sounds)))
+        encoded = encode(seen, ALL)
+        assert observation_space(ALL, 1280, 720, with_sound=True).contains(encoded)
+        assert not observation_space(ALL, 1280, 720).contains(encoded)
+        sound = encoded["sound"]
+        expected = np.concatenate(sounds[-kept:])[:SOUND_SAMPLES] * 32767
+        assert (sound["count"], sound["length"]) == (min(len(lengths), MOST_SOUNDS), len(expected))
+        assert np.array_equal(sound["samples"][: len(expected)], expected.astype(np.int16))
+        assert not sound["samples"][len(expected) :].any()

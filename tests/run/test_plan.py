@@ -303,6 +303,14 @@ def test_what_only_the_picture_tells_is_not_planned_for_the_list_alone():
         plan(tasks=["picture"], suite="hard", see=["tree"]).check(dry=True)
 
 
+def test_episodes_whose_words_nobody_has_heard_are_counted(monkeypatch):
+    monkeypatch.setattr("automotive_cosim.voice.engines.is_installed", lambda: False)
+    made, heard = (plan(tasks=["hvac_fan_max"], seeds=[0, 1], hear=[hear]) for hear in ("text", "cabin"))
+    assert (made.unheard(), heard.unheard()) == (0, 0)
+    monkeypatch.setattr("automotive_cosim.voice.table._shipped", dict)
+    assert (made.unheard(), heard.unheard()) == (0, len(heard.jobs()))
+
+
 def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
     chosen = ["hvac_fan_max", "hard_car_wash", "hard_language_midway"]
     both = plan(tasks=chosen, language=["en", "fr"])

@@ -403,6 +403,48 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
     expect(owner.get_by_text("fox: 1 of 2")).to_be_visible()
 
 
+HEARS = """window.SpeechRecognition = class {
+  start() { setTimeout(() => this.end("a bit warmer"), 50); }
+  end(transcript) { this.onresult({ results: [[{ transcript }]] }); this.onend(); }
+};"""
+QUICK = {"every_ms": [900, 1000], "shown_ms": 800, "valid_ms": [100, 850]}
+
+
+def test_a_dot_is_answered_with_a_key_and_words_are_spoken_where_the_browser_can(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = {"goal": "Warm my hands.", "said": [], "time_s": 0.0, "feedback": ["ok", ""], "context": "",
+            "readings": {}, "elements": []}  # fmt: skip
+    monkeypatch.setattr("automotive_cosim.serve.study.TOLD", QUICK)
+    monkeypatch.setattr(Game, "begin", lambda game, *rest: game._tell(state="acting", told=told))
+    study = PeopleStudy(
+        PeoplePlan(("fox",), ("hvac_fan_max", "hvac_fan_percent"), detection=True), tmp_path / "mine"
+    )
+    browser = serving(tmp_path, study=study)
+    page = opened(browser, "#/study", address=browser.server.people_address)
+    for has_recogniser in (False, True):
+        if has_recogniser:
+            page.context.add_init_script(HEARS)
+        page.reload()
+        if not has_recogniser:
+            page.evaluate("delete window.webkitSpeechRecognition; delete window.SpeechRecognition")
+            page.get_by_label("Your code name").select_option("fox")
+            page.get_by_role("button", name="Take part").click()
+            page.get_by_role("button", name="Begin the next episode").click()
+        expect(page.locator(".said")).to_contain_text("Warm my hands.")
+        expect(page.get_by_role("button", name="Speak")).to_have_count(int(has_recogniser))
+    page.get_by_role("button", name="Speak").click()
+    expect(page.get_by_label("Say to the driver, ask, or look up")).to_have_value("a bit warmer")
+    expect(page.get_by_text("some browsers send the sound to their maker")).to_be_visible()
+    page.locator(".dot").wait_for()
+    page.wait_for_timeout(150)
+    page.keyboard.press("Control")
+    until(page, lambda: study.seen()["fox"]["task"]["hits"] == 1)
+    until(page, lambda: study.seen()["fox"]["task"]["stimuli"] > 1)
+    owner = opened(browser, "#/study")
+    expect(owner.locator("tbody")).to_contain_text(re.compile(r"foxtask1 of \d+\d{3} ms"))
+
+
 def test_a_drive_is_replayed_with_its_events_on_the_slider(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path
 ) -> None:

@@ -19,6 +19,7 @@ from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.executor import failed
 from automotive_cosim.serve import play
 from automotive_cosim.serve.dealing import PeoplePlan
+from automotive_cosim.serve.detection import FIGURES, detected, figures
 from automotive_cosim.serve.study import LOG, QUESTIONS, PeopleStudy
 
 from .conftest import Browser
@@ -152,3 +153,67 @@ def test_who_takes_part_sees_the_study_alone(serving: Callable[..., Browser], tm
     assert browser("/api/study/rows.csv").headers["Content-Type"].startswith("text/csv")
     assert len(browser("/api/study/rows.json").json) == 6
     assert browser("/api/study", token="wrong").status == 403
+
+
+@pytest.mark.parametrize(
+    ("reactions", "expected"),
+    [
+        ([], (0, 0, None, None)),
+        ([None], (1, 0, 0.0, None)),
+        ([99.9, 100, 2500, 2500.1, None], (5, 2, 0.4, 1300.0)),
+        ([300, 500.5], (2, 2, 1.0, 400.2)),
+    ],
+)
+def test_hits_are_reactions_of_100_to_2500_ms(reactions: list[float | None], expected: tuple[object, ...]) -> None:
+    events = [detected({"phase": "task", "reaction_ms": each}) for each in reactions]
+    others = [{"phase": "rest", "reaction_ms": 200.0}]
+    assert figures(events + others, "task") == dict(zip(FIGURES, expected, strict=True))
+
+
+def test_dots_are_counted_by_episode_and_phase_since_it_was_begun(
+    serving: Callable[..., Browser], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(play.Game, "begin", lambda game, job, folder, keep: None)  # it is never over
+    study = PeopleStudy(replace(PLAN, detection=True), tmp_path / "mine")
+    browser = serving(tmp_path, study=study)
+    origin = {"Origin": f"http://127.0.0.1:{browser.server.server_port}"}
+    seat = study.join("fox")
+
+    def sent(phase: object, reaction_ms: object) -> int:
+        body = json.dumps({"phase": phase, "reaction_ms": reaction_ms})
+        return browser(f"/api/study/detected?seat={seat}", "POST", body=body, token=person, **origin).status
+
+    person = browser.server.people_token
+    assert browser("/api/study", token=person).json["detection"]["every_ms"] == [3000, 5000]
+    assert sent("task", 300) == 422, "nothing has begun"
+    study.begin(seat)
+    assert sent("task", 900) == 200
+    study.begin(seat)
+    for phase, wrong in (
+        ("task", "300"),
+        ("task", -1),
+        ("task", 3001),
+        ("task", True),
+        ("play", 300),
+        (None, None),
+    ):
+        assert sent(phase, wrong) == 422
+    for phase, reaction in (("rest", 310.04), ("task", 450), ("task", None), ("task", 20)):
+        assert sent(phase, reaction) == 200
+    rest, task = ({"stimuli": 1, "hits": 1, "hit_rate": 1.0, "reaction_ms": 310.0},
+                  {"stimuli": 3, "hits": 1, "hit_rate": 0.333, "reaction_ms": 450.0})  # fmt: skip
+    assert browser("/api/study/seen", token=person).status == 404, "nobody sees the others' figures"
+    assert browser("/api/study/seen").json["fox"] == {"rest": rest, "task": task}
+    line = next(line for line in study.export() if line["times_begun"])
+    assert {name: line[f"task_{name}"] for name in FIGURES} == task
+    assert line["rest_reaction_ms"] == 310.0
+
+
+def test_without_the_task_there_is_nothing_to_detect(tmp_path: Path) -> None:
+    study = PeopleStudy(PLAN, tmp_path / "mine")
+    seat = study.join("fox")
+    assert (study.overview()["detection"], study.seen()) == (None, {})
+    assert not any("reaction_ms" in name for name in study.export()[0])
+    with pytest.raises(UserError, match="nothing to detect"):
+        study.detect(seat, {"phase": "task", "reaction_ms": 300})
+    study.close()

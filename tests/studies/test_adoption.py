@@ -30,7 +30,7 @@ from automotive_cosim.studies.adoption.adoption import (
 from automotive_cosim.studies.adoption.fleets import fleet_id, read_fleet
 from automotive_cosim.studies.adoption.page import answer, charts, effects, fleets, gone, warnings
 from automotive_cosim.studies.adoption.served import cars, shares
-from automotive_cosim.studies.calls import town
+from automotive_cosim.studies.calls import chosen, town
 from automotive_cosim.studies.calls.town import CarTrip
 from automotive_cosim.studies.plan import plan_of
 from automotive_cosim.traffic.fork import Forked
@@ -181,6 +181,23 @@ def test_a_study_of_an_agent(agent: str, sumo: None, tmp_path: Path) -> None:
     else:
         assert full.warnings > half.warnings > 0
         assert full.failed == 0
+
+
+def test_a_day_of_choices_is_the_same_traffic_and_asks_each_driver_as_he_sets_out(sumo: None) -> None:
+    scenario = PLAN.scene()
+    with closing(Forked(scenario, 1)) as warm:
+        warm.call(chosen.prepare)
+        silent = chosen.day(warm, {}, 180.0)
+        warm.call(town.follow_town)
+        plain = trips_with(warm, 0.0, 180)
+        assert {car: (trip.planned_s, trip.until_s, trip.has_left) for car, trip in plain.items()}.items() <= {
+            car: (trip.planned_s, trip.until_s, trip.has_arrived) for car, trip in silent.items()
+        }.items()
+        car = next(car for car, trip in plain.items() if trip.has_left)
+        slow = chosen.day(warm, {car: SlowDown(10.0)}, 180.0)
+        assert slow[car].until_s > silent[car].until_s
+        with pytest.raises(UserError, match="nowhere"):
+            chosen.day(warm, {car: Reroute(edges=("nowhere",))}, 180.0)
 
 
 class Odd:

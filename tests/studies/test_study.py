@@ -23,6 +23,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, ROAD, STEPS, WATCHED
 from automotive_cosim.formats.writing import mark_as_written
 from automotive_cosim.report.files import write_files
+from automotive_cosim.run.attribution import sentence
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.road import read_record
@@ -104,6 +105,7 @@ def page(folder: Path) -> str:
 def test_what_a_decision_changed_is_told_and_called_chance_if_it_was_driven_once(folder: Path) -> None:
     study = Study.read(folder)
     told = attributed(folder, "")
+    assert sentence(told).endswith("each driven from the same traffic, changed more than chance does.")
     assert len(told) == sum(len(each.branches) for row in study.rows for each in row.decisions)
     assert all(each.is_neutral and "driven once" in each.act for each in told)
     assert any("may be chance: " in each.effect for each in told)

@@ -393,6 +393,26 @@ def test_later_commands_fork_from_what_a_keeper_has_warmed_and_drive_alike(
     assert not list(own_home.iterdir())
 
 
+def test_what_a_keeper_was_told_of_files_is_not_read_again(own_home: Path, tmp_path: Path) -> None:
+    file, read = tmp_path / "net.xml", list[str]()
+
+    def once() -> str:
+        def text() -> str:
+            read.append(file.read_text(encoding="utf-8"))
+            return read[-1]
+
+        return keeper.read_once([file], text)
+
+    for is_kept in (False, True):
+        if is_kept:
+            keeper.keep(5)
+        read.clear()
+        for content in ("one", "other", "one"):
+            file.write_text(content, encoding="utf-8")
+            assert [once(), once()] == [content, content]
+        assert read == (["one", "other"] if is_kept else ["one", "one", "other", "other", "one", "one"])
+
+
 @pytest.mark.parametrize("kind", ["open", "link", "file"])
 def test_no_keeper_is_used_in_a_folder_that_others_can_enter_or_made(own_home: Path, kind: str) -> None:
     if kind == "open":

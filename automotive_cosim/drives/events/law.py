@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.applied import AppliedRule
-from automotive_cosim.geo.breaches import BindingLimit, binding_limit
+from automotive_cosim.geo.binding import BindingLimit
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Status
 
@@ -28,7 +28,7 @@ def speed_kmh(moment: Moment) -> float:
 
 def limit_here(moment: Moment) -> BindingLimit | None:
     """The limit that binds, from a sign or a verified rule; None if there is none."""
-    limit = binding_limit(moment.context)
+    limit = moment.context.binding_limit
     return limit if limit is not None and limit.status is Status.VERIFIED else None
 
 

@@ -18,7 +18,7 @@ from automotive_cosim.drives.events.law import (
     time_left_s,
 )
 from automotive_cosim.drives.margins import hold_s, margin_kmh
-from automotive_cosim.geo.breaches import SIGN, binding_limit
+from automotive_cosim.geo.binding import SIGN
 from automotive_cosim.geo.weather import phenomena
 
 FOG_M = 1000.0
@@ -84,7 +84,7 @@ class OverLimit(SpeedKind):
     def against(self, drive: Sequence[Moment]) -> str | None:
         """A limit, by whatever rule, that the car keeps."""
         now = drive[-1]
-        limit, kmh = binding_limit(now.context), speed_kmh(now)
+        limit, kmh = now.context.binding_limit, speed_kmh(now)
         if limit is None:
             is_lifted = now.driving.road.limit.is_posted
             return f"{kmh:.0f} km/h where no limit applies" if is_lifted else None

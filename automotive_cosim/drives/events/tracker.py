@@ -69,8 +69,10 @@ class Tracker:
         now_s = drive[-1].time_s
         opened = []
         for name, kind in self._kinds.items():
-            latest = self._latest[name]
-            seen = {(sighting.subject, sighting.lookalike): sighting for sighting in kind.sight(drive)}
+            latest, sights = self._latest[name], tuple(kind.sight(drive))
+            if not latest and not sights:
+                continue
+            seen = {(sighting.subject, sighting.lookalike): sighting for sighting in sights}
             for key, sighting in seen.items():
                 event = latest.get(key)
                 if event is None or (event.ended and now_s - event.last_s > REOPEN_S):

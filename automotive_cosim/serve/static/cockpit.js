@@ -1,6 +1,7 @@
 // The cockpit for a person: its screen, the information that an agent gets, and the same acts.
 
 import { ask, h, plain, seconds, send } from "./dom.js";
+import { speaker } from "./speech.js";
 
 const [WIDE, HIGH] = [1280, 720];
 const TAP_PX = 16;
@@ -55,7 +56,7 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
     h("div", { class: "card stage-one" }, frame), typed,
     h("div", { class: "card transport" },
       button("Back", () => act({ action_type: "navigate_back" })), button("Home", () => act({ action_type: "navigate_home" })), button("Enter", () => act({ action_type: "keyboard_enter" })),
-      h("form", { class: "filters say", onsubmit: (event) => { event.preventDefault(); speak("answer"); } }, answer, h("button", { type: "submit" }, "Say"), button("Ask", () => speak("ask_driver")), button("Look up", () => speak("query")))),
+      h("form", { class: "filters say", onsubmit: (event) => { event.preventDefault(); speak("answer"); } }, answer, h("button", { type: "submit" }, "Say"), button("Ask", () => speak("ask_driver")), button("Look up", () => speak("query"))), speaker(answer, say)),
     h("div", { class: "card transport" }, h("span", { class: "muted" }, "When finished:"),
       button("Done", () => declare("complete"), "main"), button("Not needed", () => declare("not_needed")), button("Can't or not allowed", () => declare("infeasible")), reason,
       h("span", { class: "leave" }, button(leaveLabel, async () => { try { await send(address("/leave"), {}); } catch (error) { say(error); } })))),

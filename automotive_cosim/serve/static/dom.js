@@ -25,7 +25,7 @@ export const plain = (name) => String(name ?? "").replaceAll("_", " ");
 
 // The model's name as people read it: without prices, which change nothing that it does.
 export function modelName(model) {
-  const [name, options = ""] = model.split("?");
+  const [name, options = ""] = (model ?? "").split("?"); // nothing is known of an episode that has just begun
   return [name, ...options.split("&").filter((each) => each && !each.startsWith("usd_per_"))].join(", ");
 }
 

@@ -2,6 +2,7 @@
 
 import { ask, h, plain, send } from "./dom.js";
 import { cockpitPanel, listen, rulesCard, waiting } from "./cockpit.js";
+import { detector } from "./detection.js";
 
 const KEPT = "automotive-cosim seat"; // in this tab: a second tab is another person
 
@@ -16,22 +17,28 @@ export async function studyPage() {
   const trying = (what) => async (event) => { event?.preventDefault(); try { say(null); await what(event); } catch (error) { say(error); } };
   let seat = sessionStorage.getItem(KEPT) ?? "";
   let [stop, cockpit, turn, gone] = [() => {}, null, null, false];
+  const detection = study.detection && detector(study.detection, (came) => send(at("detected"), came).catch(say));
+  const detecting = h("div", { hidden: true }, detection?.element);
+  const detect = (phase) => { detecting.hidden = !phase; detection?.during(phase); };
 
   const at = (what) => `/api/study/${what}?${new URLSearchParams({ seat })}`;
 
-  function welcome(people) {
+  async function welcome(people) {
     status.textContent = "";
     const name = h("select", { required: true }, h("option", { value: "" }, "Choose"), people.map((each) => h("option", { value: each.name }, each.name)));
+    const seen = visitor === "owner" && study.detection ? await ask("/api/study/seen") : {};
     main.replaceChildren(h("form", { class: "card filters", onsubmit: trying(async () => {
       ({ seat } = await send("/api/study/join", { name: name.value, seat }));
       sessionStorage.setItem(KEPT, seat);
       await sitDown();
-    }) }, h("label", {}, "Your code name", name), h("button", { type: "submit", class: "main" }, "Take part")), rulesCard(), ...(visitor === "owner" ? [owners(people)] : []));
+    }) }, h("label", {}, "Your code name", name), h("button", { type: "submit", class: "main" }, "Take part")), rulesCard(), ...(visitor === "owner" ? [owners(people, seen)] : []));
   }
 
-  function owners(people) {
+  function owners(people, seen) {
     return h("section", {}, h("h2", {}, "Everyone's progress"), h("div", { class: "card" },
       h("ul", {}, people.map((each) => h("li", {}, `${each.name}: ${each.done} of ${each.planned}`))),
+      study.detection && h("table", {}, h("thead", {}, h("tr", {}, ["Red dots", "Phase", "Seen", "Reaction"].map((name) => h("th", { scope: "col" }, name)))),
+        h("tbody", {}, Object.entries(seen).flatMap(([name, phases]) => Object.entries(phases).map(([phase, each]) => h("tr", {}, h("td", {}, name), h("td", {}, phase), h("td", {}, `${each.hits} of ${each.stimuli}`), h("td", {}, each.reaction_ms === null ? "" : `${Math.round(each.reaction_ms)} ms`)))))),
       h("p", { class: "muted" }, "Rows, answers and times: ", h("a", { href: "/api/study/rows.csv", download: "study.csv" }, "CSV"), " · ", h("a", { href: "/api/study/rows.json", download: "study.json" }, "JSON"))));
   }
 
@@ -47,6 +54,7 @@ export async function studyPage() {
   const trying2 = (what) => (scene) => what(scene).catch(say);
 
   async function show(scene) {
+    detect({ acting: "task", driving: "rest" }[scene.state] ?? "");
     if (scene.state === "acting") {
       if (main.firstChild !== cockpit.element) main.replaceChildren(cockpit.element);
       cockpit.show(scene);
@@ -87,11 +95,11 @@ export async function studyPage() {
 
   return {
     title: "Study",
-    content: [heading, note, status, main],
+    content: [heading, note, status, detecting, main],
     ready: async () => {
       if (!seat) return welcome(study.people);
       try { await sitDown(); } catch { welcome(study.people); }
     },
-    leave: () => { gone = true; stop(); cockpit?.leave(); },
+    leave: () => { gone = true; stop(); cockpit?.leave(); detection?.leave(); },
   };
 }

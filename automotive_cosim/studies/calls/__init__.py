@@ -3,6 +3,7 @@
 accounts  what is read: the state of the traffic, the ego's consumption, how a future ended
 ledger    keeps a record of all vehicles, and reads it
 chance    other random numbers from here on
+chosen    drives a day on which what is asked of each driver is known before
 divert    sends other cars the ego's other way
 flow      takes a measure, and measures a network
 """

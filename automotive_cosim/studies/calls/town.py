@@ -125,6 +125,13 @@ def drawn(seed: int, car: str) -> float:
     return float(np.random.default_rng((seed, crc32(car.encode()))).random())
 
 
+def driving(running: Running) -> list[str]:
+    """The cars that are on roads for cars now."""
+    sumo, edges = running.sumo, running.world.network.edges
+    cars = (car for car in sumo.vehicle_ids() if sumo.vehicle_class(car) == "passenger")
+    return [car for car in cars if sumo.edge_of(car) in edges]
+
+
 def woken(running: Running, car: str, seed: int, driver: str) -> tuple[bool, DrivingState | None]:
     """Puts a cockpit into a car that had none for a while: whether the car is still in the traffic, and its state;
     None in a junction, where nothing can be asked for."""

@@ -1,0 +1,213 @@
+"""What this checkout costs beside another one, each figure measured in turns, in processor time.
+
+    python benchmarks/beside.py ../other                    # every part, with that checkout's own .venv
+    python benchmarks/beside.py ../other --parts lean reset --net town.net.xml --rounds 3
+
+Processor time is user and system time of all processes of a part, keeper and simulations included; the machine may
+be shared. Of several rounds the least counts, of decisions the least quarter.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+MARK = "XDG_RUNTIME_DIR"
+"""Passed on to the keeper and to simulations: by its value, processes are told to be of one part."""
+LISTINGS = ("--help", "run --help", "tasks list", "scenarios list", "show drives", "agents list")
+PARTS = ("listings", "lean", "full", "reset", "second", "kept")
+
+
+def processes(mark: str) -> dict[int, float]:
+    """Processor seconds so far of every process with the mark, by its id."""
+    found: dict[int, float] = {}
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                if f"{MARK}={mark}\0".encode() in (entry / "environ").read_bytes() + b"\0":
+                    found[int(entry.name)] = time.clock_gettime(((~int(entry.name)) << 3) | 2)
+            except OSError:  # it has ended, or is not ours
+                continue
+    return found
+
+
+def spent_s(command: list[str], mark: str, cwd: Path, until: Path | None = None) -> float:
+    """Processor seconds of a command and all that it starts, to its end, or to the first picture in a folder."""
+    before = processes(mark)
+    seen: dict[int, float] = {}
+    running = subprocess.Popen(
+        command, cwd=cwd, env=os.environ | {MARK: mark}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    while running.poll() is None and not (until and any(until.rglob("*.jpg"))):
+        seen |= processes(mark)
+        time.sleep(0.05)
+    if running.poll() is None:
+        seen |= processes(mark)
+        running.terminate()
+        running.wait()
+    if running.returncode > 0:
+        raise SystemExit(f"{' '.join(command)} failed in {cwd}")
+    return sum(each_s - before.get(pid, 0.0) for pid, each_s in seen.items())
+
+
+def lean(*, is_lean: bool) -> dict[str, float]:
+    """Milliseconds of a decision of ``FlatDrive-v0``, and of its second in this process and in the simulation's."""
+    import gymnasium as gym
+
+    import automotive_cosim  # noqa: F401, which registers the environments
+
+    env = gym.make("AutomotiveCosim/FlatDrive-v0", families=("grid_june",), minutes=15, lean=is_lean).unwrapped
+    env.reset(seed=0)
+    mine: list[float] = []
+    others: list[float] = []
+    for _ in range(20):
+        before_s, there_s = time.process_time(), sum(processes(os.environ[MARK]).values())
+        mine_s, seconds = 0.0, 0.0
+        for _ in range(15):
+            begun_s, clock_s = time.process_time(), env.episode.seconds
+            env.step(1)
+            mine_s += time.process_time() - begun_s
+            seconds += env.episode.seconds - clock_s
+        own_s = time.process_time() - before_s
+        both_s = sum(processes(os.environ[MARK]).values()) - there_s
+        mine.append(1000 * mine_s / seconds)
+        others.append(1000 * (both_s - own_s) / seconds)
+    quarter = len(mine) // 4
+    python_ms, sumo_ms = sorted(mine)[quarter], sorted(others)[quarter]
+    name = "lean" if is_lean else "full"
+    return {
+        f"{name}: Python, ms a simulated second": python_ms,
+        f"{name}: simulation's process, ms a simulated second": sumo_ms,
+        f"{name}: decisions of 2 s per second of one core": 500 / (python_ms + sumo_ms),
+    }
+
+
+def first_reset(net: str) -> dict[str, float]:
+    """Processor seconds of the first reset of a drive on a network, and of the simulation's process in it."""
+    import gymnasium as gym
+
+    import automotive_cosim  # noqa: F401
+
+    mark, begun_s = os.environ[MARK], time.process_time()
+    env = gym.make("AutomotiveCosim/Drive-v0", scenario=net, channels=("vehicle",))
+    env.reset(seed=0)
+    own_s = time.process_time() - begun_s
+    there_s = sum(each for pid, each in processes(mark).items() if pid != os.getpid())
+    begun_s = time.process_time()
+    env.reset(seed=1)
+    return {
+        "first reset of a drive: all, s": own_s + there_s,
+        "first reset of a drive: simulation's process, s": there_s,
+        "another seed's reset: this process, s": time.process_time() - begun_s,
+        "bare SUMO's load and warm-up, s": bare_s(net),
+        "memory of the simulation's process, MB": max(
+            memory_mb(pid) for pid in processes(mark) if pid != os.getpid()
+        ),
+    }
+
+
+def bare_s(net: str) -> float:
+    """Processor seconds in which libsumo alone loads the same files with the same traffic, and warms it up."""
+    from automotive_cosim.scenarios import open_scenario
+    from automotive_cosim.traffic.options import Setup, command_line, copied, read_configuration, run_options
+    from automotive_cosim.traffic.sumo import load_library, start
+
+    scenario, sumo = open_scenario(net), load_library()
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        options = run_options(copied(read_configuration(scenario.config), Path(folder)), Setup(scenario))
+        begun_s = time.process_time()
+        start(sumo, command_line(options))
+        for _ in range(round(scenario.sumo.warm_up_s / scenario.sumo.step_length_s)):
+            sumo.step()
+        return time.process_time() - begun_s
+
+
+def memory_mb(pid: int) -> float:
+    """Resident memory of a process."""
+    return int(Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def listings(program: str, cwd: Path) -> dict[str, float]:
+    """Milliseconds of commands that only tell something."""
+    found = {}
+    for words in LISTINGS:
+        command = [program, *words.split()]
+        begun = os.times()
+        subprocess.run(command, cwd=cwd, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        ended = os.times()
+        spent = ended.children_user - begun.children_user + ended.children_system - begun.children_system
+        found[f"{words}, ms"] = 1000 * spent
+    return found
+
+
+def commands(part: str, other: Path, net: str) -> dict[str, float]:
+    """A second ``run`` to its first picture, or the size of a kept drive of ten minutes."""
+    program = str(other / ".venv/bin/automotive-cosim")
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder, "runs")
+        if part == "kept":
+            words = ["run", "--drive", "grid_june", "--see", "nothing", "--minutes", "10", "--out", str(out)]
+            took_s = spent_s([program, *words], folder, other)
+            size = sum(file.stat().st_size for file in out.rglob("*") if file.is_file())
+            return {"a drive of ten minutes: s": took_s, "a drive of ten minutes: MB": size / 1e6}
+        took = {}
+        subprocess.run([program, "keep"], env=os.environ | {MARK: folder}, check=False, capture_output=True)
+        for count in ("first", "second"):
+            words = ["run", "--scenario", net or "paris_centre", "--out", str(out / count)]
+            took[f"{count} run to its first picture, s"] = spent_s([program, *words], folder, other, out / count)
+        subprocess.run([program, "keep", "--minutes", "0"], env=os.environ | {MARK: folder}, check=False)
+        return took
+
+
+def part_of(part: str, other: Path, net: str) -> dict[str, float]:
+    """One part, measured once with one checkout."""
+    if part in ("second", "kept"):
+        return commands(part, other, net)
+    if part == "listings":
+        return listings(str(other / ".venv/bin/automotive-cosim"), other)
+    with tempfile.TemporaryDirectory() as mark:
+        told = subprocess.run(
+            [str(other / ".venv/bin/python"), str(Path(__file__).absolute()), str(other), "--own", part]
+            + (["--net", net] if net else []),
+            cwd=other,
+            env=os.environ | {MARK: mark},
+            stdout=subprocess.PIPE,
+            check=True,
+        )
+    found: dict[str, float] = json.loads(told.stdout.splitlines()[-1])
+    return found
+
+
+def main() -> None:
+    """Measures in turns, and prints a table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("other", type=Path, help="another checkout")
+    parser.add_argument("--parts", nargs="*", default=list(PARTS), choices=PARTS)
+    parser.add_argument("--net", default="", help="a network, for reset and second")
+    parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("--own", default="", help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    net = str(Path(given.net).absolute()) if given.net else ""
+    if given.own:
+        found = first_reset(net or "paris_centre") if given.own == "reset" else lean(is_lean=given.own == "lean")
+        print(json.dumps(found))
+        return
+    checkouts = (given.other.absolute(), Path(__file__).absolute().parents[1])
+    print("| figure | before | now | ratio |\n|---|---:|---:|---:|")
+    for part in given.parts:
+        rounds = [[part_of(part, each, net) for each in checkouts] for _ in range(given.rounds)]
+        for name in rounds[0][0]:
+            best = max if "per second" in name else min
+            before, now = (best(both[side][name] for both in rounds) for side in (0, 1))
+            print(f"| {name} | {before:,.2f} | {now:,.2f} | {now / before if before else 0.0:.2f} |", flush=True)
+    print(f"\nload {os.getloadavg()[0]:.1f}, {given.rounds} rounds in turns")
+
+
+if __name__ == "__main__":
+    main()
