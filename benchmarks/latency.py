@@ -7,14 +7,14 @@ python -m benchmarks.latency runs/latency docs/images/latency.svg
 from __future__ import annotations
 
 import argparse
-import json
 from collections import defaultdict
 from collections.abc import Mapping
 from math import log
 from pathlib import Path
 
-from automotive_cosim.formats.files import read_text
 from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.store import read_rows
 from automotive_cosim.tasking.task import Hurry
 from automotive_cosim.tasks import CATALOGUE
 
@@ -27,12 +27,11 @@ Rates = Mapping[str, Mapping[float, float]]
 def rates(folder: Path) -> Rates:
     """What a folder of an evaluation holds; episodes that were not run count for nothing."""
     won: dict[str, dict[float, list[bool]]] = defaultdict(lambda: defaultdict(list))
-    for line in read_text(folder / "episodes.jsonl").splitlines():
-        row = json.loads(line)
-        if row.get("error"):
+    for row in read_rows(folder, EpisodeRow).values():
+        if row.error is not None:
             continue
-        for name in ("all", str(CATALOGUE[row["task"]].hurries)):
-            won[name][row["conditions"]["latency_s"]].append(bool(row["success"]))
+        for name in ("all", str(CATALOGUE[row.task].hurries)):
+            won[name][row.conditions.latency_s].append(bool(row.success))
     return {
         name: {at_s: sum(of) / len(of) for at_s, of in sorted(by.items())}
         for name, by in sorted(won.items(), key=lambda each: list(COLOURS).index(each[0]))

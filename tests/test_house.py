@@ -27,7 +27,7 @@ OTHERS = "beside them"
 
 CEILINGS = {
     "agents": (6518, 66, 0),
-    "benchmarks": (3137, 18, 0),
+    "benchmarks": (3136, 18, 0),
     "cli": (4634, 13, 196),
     "cockpit": (18568, 186, 0),
     "contracts": (1561, 67, 0),
@@ -54,9 +54,9 @@ CEILINGS = {
     "serve": (2741, 22, 0),
     "service": (396, 4, 0),
     "studies": (14020, 125, 90),
-    "tasking": (5354, 60, 0),
+    "tasking": (5361, 60, 0),
     "tasks": (15, 0, 0),
-    "tests": (65293, 125, 0),
+    "tests": (65363, 125, 0),
     "traffic": (12531, 80, 0),
     "view": (1771, 15, 0),
     "voice": (514, 0, 0),
@@ -65,7 +65,7 @@ CEILINGS = {
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
 
-DATA_LINES, WIDTH = 15_609, 130
+DATA_LINES, WIDTH = 16_051, 130
 """Lines of the tasks' files, with every phrasing, and characters of the longest."""
 
 

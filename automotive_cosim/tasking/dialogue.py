@@ -86,12 +86,15 @@ class Says:
     """Number of questions that the driver must have answered."""
     over_s: float = 0.0
     """Seconds into words of the agent at which he talks over them; 0 if he waits until nobody speaks."""
+    unchanged: frozenset[str] = frozenset()
+    """Keys of ``Moment.commands``, none of which may have changed since then: a wish that is said again."""
 
     def __str__(self) -> str:
         told = (
             f"after {self.step} actions" if self.step else "",
             f"after {self.time_s:g} s" if self.time_s else "",
             f"once {' or '.join(sorted(self.changed))} has changed" if self.changed else "",
+            f"while {' and '.join(sorted(self.unchanged))} has not changed" if self.unchanged else "",
             f"after {self.after} answers" if self.after else "",
             f"once {self.when}" if self.when else "",
             f"{self.over_s:g} s into what the car says" if self.over_s else "",
@@ -109,6 +112,7 @@ class Says:
             steps >= self.step
             and now.time_s - start.time_s >= self.time_s - ROUNDING_S
             and (not self.changed or any(now.commands[key] != start.commands[key] for key in self.changed))
+            and all(now.commands[key] == start.commands[key] for key in self.unchanged)
             and len(questions(start, now)) >= self.after
             and (self.when is None or self.when(now))
         )

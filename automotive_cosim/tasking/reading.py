@@ -747,6 +747,7 @@ _SPECIAL: dict[tuple[str, str], _Decoder] = {
     ("Start", "cabin"): _cabin,
     ("Start", "aboard"): _aboard,
     ("Says", "changed"): _keys,
+    ("Says", "unchanged"): _keys,
 }
 
 

@@ -25,6 +25,7 @@ from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.interface.functions import functions
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Hurry
 from automotive_cosim.tasks import CATALOGUE
 from docs import tables
 from tests.laws import over
@@ -373,6 +374,13 @@ def test_pages_count_the_tasks_as_they_are():
     voice = Counter(task.id.split("_")[1] for task in CATALOGUE.of(Suite.VOICE))
     assert f"has {voice.total()} pairs in which noise in the cabin, or who spoke, decides" in reference
     assert [kind for kind, count in voice.items() if f"`voice_{kind}_*` ({count})" not in reference] == []
+    assert (
+        f"The suite `people` has {len(CATALOGUE.of(Suite.PEOPLE))} pairs in which those aboard react" in reference
+    )
+    hurried = Counter(task.hurries for task in CATALOGUE.values())
+    road, call, words = (hurried[kind] for kind in Hurry)
+    live = f"eight seconds ({road} pairs), somebody rings ({call}), or the driver says more on the way ({words})."
+    assert live in reference
     clarify = len(CATALOGUE.of(Suite.CLARIFY))
     asking = sum("asking" in task.tags for task in standard)
     assert f"has {clarify} pairs about wishes that leave something open" in reference

@@ -96,6 +96,8 @@ def test_a_goal_says_what_must_be_asked():
         (Says("No.", time_s=5.0), at(time_s=5.0), 1, True),
         (Says("No.", changed=frozenset({"horn"})), at(horn=0), 9, False),
         (Says("No.", changed=frozenset({"horn"})), at(horn=1), 1, True),
+        (Says("No.", unchanged=frozenset({"horn"})), at(horn=0), 9, True),
+        (Says("No.", unchanged=frozenset({"horn"})), at(horn=1), 9, False),
         (Says("No.", after=1), at(), 9, False),
         (Says("No.", after=1), at("Which Nora?"), 1, True),
         (Says("No.", when=lambda moment: moment.time_s > 2.0), at(time_s=2.0), 9, False),

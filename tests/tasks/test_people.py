@@ -1,0 +1,58 @@
+"""Laws over the suite in which those aboard react: who speaks is there, and notices what he speaks about."""
+
+import re
+
+from automotive_cosim.cockpit.occupants import Seat
+from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA
+from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Hurry
+from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
+
+PEOPLE = CATALOGUE.of(Suite.PEOPLE)
+ALL = frozenset(Seat)
+FRONT = frozenset({Seat.DRIVER, Seat.PASSENGER})
+NOTICED = {
+    CABIN.AMBIENT_LIGHT.path: ALL,
+    CABIN.DOME_LIGHT.path: ALL,
+    CABIN.DRIVER_READING_LIGHT.path: FRONT,
+    CABIN.DRIVER_WINDOW.path: ALL,
+    CABIN.REAR_LEFT_WINDOW.path: ALL,
+    CABIN.REAR_RIGHT_WINDOW.path: ALL,
+    CABIN.SUNROOF.path: ALL,
+    CABIN.SUNROOF_SHADE.path: ALL,
+    HVAC.DRIVER_TEMPERATURE.path: frozenset({Seat.DRIVER}),
+    HVAC.PASSENGER_TEMPERATURE.path: FRONT,
+    MEDIA.ACTION.path: ALL,
+    MEDIA.VOLUME.path: ALL,
+}
+"""From which seats a change can be seen, heard or felt: light, wind and sound everywhere, a zone's air by who sits
+in it; the driver sees the middle screen besides."""
+
+
+@over((task, name) for task in PEOPLE for name in task.halves)
+def test_who_reacts_is_aboard_awake_and_notices_it(task, name):
+    half = draw(task, name, 0).half
+    awake = {Seat.DRIVER, *(each.seat for each in half.start.aboard if not each.asleep)}
+    for says in half.says:
+        named = re.match(r"From the (.+?) seat: ", says.text)
+        seat = next(seat for seat in Seat if seat.words == named[1]) if named else Seat.DRIVER
+        assert seat in awake
+        paths = set(re.findall(r"Vehicle\.[\w.]*\w", str(says)))
+        assert paths or says.time_s, "a reaction is to something, or comes at a time"
+        assert {path for path in paths if seat not in NOTICED[path]} == set()
+
+
+@over(PEOPLE)
+def test_a_wish_is_said_again_if_nothing_has_come_of_it_and_the_first_act_does_not_settle_it(task):
+    assert any(says.unchanged and says.time_s for says in task.first.says)
+    assert task.first.slips
+    assert task.second.slips
+    assert task.hurries is Hurry.WORDS
+
+
+def test_every_kind_of_reaction_is_there():
+    said = "\n".join(says.text for task in PEOPLE for says in draw(task, "first", 0).half.says)
+    for kind in (["Did you hear me?", "Hello?"], ["Thank you.", "Great."], ["Not mine"], ["No quarrel"]):
+        assert any(each in said for each in kind), kind
