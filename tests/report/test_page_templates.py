@@ -18,7 +18,7 @@ def test_a_manifest_lists_what_was_given_and_no_none() -> None:
         "limits": {"a": 2, "b": None},
     }
     starts = [{"started": "", "platform": "", "git": None, "versions": {}}]
-    nothing = dict.fromkeys(("title", "about", "answer"), "") | dict.fromkeys(("warnings", "tables"), ())
+    nothing = dict.fromkeys(("title", "about", "answer", "picture"), "") | dict.fromkeys(("warnings", "tables"), ())
     page = render(
         "studies/network.html", **nothing, plots={}, errors=0, missing=0, plan=plan, starts=starts, of="run"
     )
