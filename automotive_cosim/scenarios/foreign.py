@@ -74,15 +74,17 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     Raises:
         ScenarioError: the files are missing or invalid, or no two roads are connected.
     """
-    return _as_it_is(path, to_be_moved, stamp(read_configuration(path)))
+    configuration = read_configuration(path)
+    if configuration.files.keys() == {"net-file"}:
+        return _as_it_is(path, to_be_moved, stamp(configuration))
+    return _read(path, configuration, to_be_moved=to_be_moved)  # what its other files name may have changed
 
 
 @lru_cache(maxsize=8)
 def _as_it_is(path: Path, to_be_moved: bool, files: tuple[object, ...]) -> Scenario:
-    """As ``foreign_scenario``; kept while its files are as they are, for to read a city takes seconds."""
+    """As ``foreign_scenario``, of a network alone; kept while it is as it is, for to read a city takes seconds."""
     configuration = read_configuration(path)
-    if not to_be_moved and configuration.files.keys() == {"net-file"}:
-        # what additional and route files include is not known before they are read
+    if not to_be_moved:
         return read_once(
             {path.absolute(), configuration.net.absolute()},
             lambda: _read(path, configuration, to_be_moved=to_be_moved),

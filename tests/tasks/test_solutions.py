@@ -32,7 +32,12 @@ from tests.laws import hold
 
 from ..cockpit.conftest import outside, town
 
-HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
+HALVES = [
+    (task, name)
+    for task in CATALOGUE.values()
+    for name in task.halves
+    if "asked_on" not in repr(task.half(name).goal)  # this road never leads to another
+]
 OTHER_SIZES = (ScreenSize.WIDE, ScreenSize.PORTRAIT)
 SAMPLED = [
     pytest.param(task, "first", size, id=f"{task.id}-{size}")

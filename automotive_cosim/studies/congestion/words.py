@@ -9,6 +9,7 @@ from automotive_cosim.scenarios.wording import spelled
 
 PHRASES: Mapping[str, str] = {
     "breakdown": "breakdown on {edge}",
+    "sign": "sign of {limit_kmh} km/h on {edges}",
     "roadworks": "roadworks on {edge} at {limit_kmh} km/h",
     "jam": "jam of {length_m} m on {edges}",
     "closure": "{edge} closed",
