@@ -28,6 +28,7 @@ from automotive_cosim.envs.fleet import FleetVectorEnv
 from automotive_cosim.envs.vector import ConcurrentVectorEnv
 from automotive_cosim.episode.fleet import Fleet
 from automotive_cosim.episode.specification import SessionSetup
+from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.run.measure import pss_mb
 from automotive_cosim.studies.adoption.adoption import AdoptionPlan
 from automotive_cosim.studies.calls.town import NOWHERE, driving
@@ -104,7 +105,7 @@ def session_of(car: RemoteTraffic, plan: AdoptionPlan) -> DriveSession:
         Cockpit(car.network, rng=next(draws), lookout=True),
         scenario,
         gps_rng=next(draws),
-        weather=scenario.weather,
+        weather=scenario.weather or drawn_weather(car.state, scenario.start, 1),
         departure=scenario.start,
     )
     return DriveSession.depart_with(world, SessionSetup(CHANNELS, lean=True), judged=False)

@@ -200,6 +200,18 @@ def test_a_day_of_choices_is_the_same_traffic_and_asks_each_driver_as_he_sets_ou
             chosen.day(warm, {car: Reroute(edges=("nowhere",))}, 180.0)
 
 
+@pytest.mark.slow
+def test_cockpits_in_a_scenario_without_weather_have_the_climates(
+    sumo: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    scene = replace(PLAN.scene(), weather=())
+    monkeypatch.setattr(AdoptionPlan, "scene", lambda self: scene)
+    plan = replace(PLAN, agent="silent", seeds=(1,), minutes=1.0, shares=(100.0,))
+    row = tried(run_seed)(plan.jobs()[0], tmp_path)
+    assert row.error is None
+    assert not any(car.error for car in row.shares[-1].cars)
+
+
 class Odd:
     """An assistant of one's own that advises half of its cars and fails in three ways for others."""
 

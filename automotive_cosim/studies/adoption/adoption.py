@@ -32,6 +32,7 @@ from automotive_cosim.episode.session import TakesTime
 from automotive_cosim.episode.specification import SCREEN, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, CosimError, OutOfBudgetError, UserError
 from automotive_cosim.formats.layout import LIVE
+from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import alone
 from automotive_cosim.run.row import JobRow, columns
@@ -476,7 +477,7 @@ class _Drive:
             Cockpit(car.network, rng=contents, lookout=True),
             scenario,
             gps_rng=receiver,
-            weather=scenario.weather,
+            weather=scenario.weather or drawn_weather(state, scenario.start, self._job.seed),
             departure=departure,
         )
         setup = SessionSetup(agent.channels, lean=not agent.channels & SCREEN)

@@ -265,7 +265,7 @@ def film(rule):
             for about in EDGES.values():
                 draw.line([place(side, *NODES[node]) for node in about.split()[:2]], "lightgray", 5)
             for _, x_m, y_m, *_ in each:
-                x, y = place(side, x_m, y_m)
+                x, y = place(side, x_m + NODES["s"][0], y_m)  # netconvert begins at 0
                 draw.ellipse((x - 3, y - 3, x + 3, y + 3), "darkblue")
             draw.text(
                 (30 + 620 * side, 8), f"{name}: {len(each)} cars, {number / 6:.0f} min", "black", font_size=20
