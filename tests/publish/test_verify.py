@@ -34,7 +34,7 @@ from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import opened, read_evaluation, read_rows, read_trace, write_trace
 from automotive_cosim.run.worker import run_job
 from automotive_cosim.tasking.binding import bound
-from automotive_cosim.tasking.dialogue import PARDON, understood
+from automotive_cosim.tasking.dialogue import PARDON, TALKED_OVER, understood
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 
@@ -364,8 +364,8 @@ def test_a_replay_finds_what_nothing_else_can(ran, simulations):
 def test_an_answer_that_the_driver_did_not_understand_is_none(ran):
     row = judged(ran)
     start, action = read_judged(ran, row.id, Judged).trace[0], Action(ActionType.ANSWER, text="At 20 degrees.")
-    for said, told in (((), ("At 20 degrees.",)), ((PARDON,), ())):
-        step = Step(1, start, (), action, Feedback(FeedbackCode.OK, ""), said=said)
+    for words, said, told in (("", (), ("At 20 degrees.",)), ("", (PARDON,), ()), (TALKED_OVER, ("No!",), ())):
+        step = Step(1, start, (), action, Feedback(FeedbackCode.OK, words), said=said)
         assert understood(step) == tuple(episodes._answers(step.as_json())) == told
 
 
