@@ -6,8 +6,9 @@ On the record nobody acts, so what an agent would have changed on the road is le
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pytest
 
@@ -17,7 +18,10 @@ from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import NOT_DUE, ORDER, Judgement, Worth, judge
 from automotive_cosim.drives.score import Score, score
+from automotive_cosim.run.row import from_json
+from automotive_cosim.traffic.fork import Simulations
 from tests.drives.record import Recorded, came_off, outdated, recorded
+from tests.drives.record import drive as drive_of
 from tests.drives.rote import most_frequent
 
 EVERY = [pytest.param(family) for family in FAMILIES]
@@ -57,6 +61,17 @@ def counted(judgement: Judgement) -> list[int]:
 
 def test_the_record_is_of_the_drives_as_they_are_drawn() -> None:
     assert not outdated(), "run python -m tests.drives.record --renew"
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "family", [pytest.param(each, marks=() if each == "grid_june" else pytest.mark.proof) for each in FAMILIES]
+)
+def test_what_happens_on_a_drive_is_what_is_on_record(family: str, simulations: Simulations) -> None:
+    """A change that means to alter traffic renews the record."""
+    driven = json.loads(json.dumps(asdict(drive_of(family, simulations))))
+    assert from_json(Recorded, driven) == recorded()[family]
 
 
 @pytest.mark.parametrize("family", EVERY)
