@@ -17,7 +17,8 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from contextlib import closing, nullcontext
+from contextlib import closing, suppress
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -25,11 +26,15 @@ from unittest.mock import patch
 
 import numpy as np
 
-from automotive_cosim.agents import Agent, AgentSettings, Oracle, make_agent
+from automotive_cosim.agents import AgentSettings, Oracle, make_agent
 from automotive_cosim.contracts import Action, Observation
 from automotive_cosim.contracts.given import Hearing, PromptLength
 from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.situation import HandOver
+from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.proof.hand_over import SETUP, Ground, finish
 from automotive_cosim.report.stats import bracketed, wilson
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.trial import run_trial
@@ -42,7 +47,7 @@ from automotive_cosim.voice.table import CLEAN_DB, LEVELS_DB, lacking, word_erro
 AGENTS = ("asurada", "t3a", "caller")
 MODEL, SCENARIO, SEED = "rules", "grid", 0
 TASKS = 40
-TEXT, CABIN = "text", "cabin"
+TEXT = "text"
 LEVELS = (TEXT, *(f"{CLEAN_DB if level is None else level:g}" for level in LEVELS_DB))
 INSTANCES = 100
 """Of a task, among which the words are looked for."""
@@ -104,16 +109,40 @@ def played(
     more: dict[str, Any] = {"interface": "functions"} if agent == "caller" else {}
     more |= {} if model == MODEL else {"prompt": str(PromptLength.SHORT)}
     under = Conditions.named({"hear": str(Hearing.TEXT if level == TEXT else Hearing.CABIN)} | more)
-    where = SCENARIO if CATALOGUE[task].suite is Suite.STANDARD else None
-    setup = EpisodeSetup(task, half, where, seed=SEED, conditions=under, agent=agent, model=model, max_steps=steps)
-    player: Agent = (
-        Listener(agent) if agent in ("careful", "eager") else make_agent(agent, model, AgentSettings(under))
+    setup = EpisodeSetup(
+        task, half, SCENARIO, seed=SEED, conditions=under, agent=agent, model=model, max_steps=steps
     )
-    is_set = level not in (TEXT, CABIN)
-    with (
-        patch("automotive_cosim.episode.session.driver_snr_db", lambda _: float(level)) if is_set else nullcontext()
-    ):
-        return run_trial(setup, player, simulations=simulations).success
+    snr_db = 0.0 if level == TEXT else float(level)
+    with patch("automotive_cosim.episode.session.driver_snr_db", lambda noise_db: snr_db):
+        return run_trial(setup, make_agent(agent, model, AgentSettings(under)), simulations=simulations).success
+
+
+def controlled(agent: str, task: str, half: str, level: str, simulations: Simulations, *_: object) -> bool | None:
+    """As ``played``, in the noise of the drive, which agents and ways to hear share up to the hand-over."""
+    ground = _ground(task, half, simulations)
+    if ground is None:
+        return None
+    under = replace(SETUP, conditions=Conditions(hear=Hearing(level)))
+    there = HandOver(
+        ground.instance, ground.episode.world.branch(), ground.episode.drive, ground.episode.scenario, SEED
+    )
+    player = Listener(agent) if agent in ("careful", "eager") else make_agent(agent, "none", AgentSettings())
+    return finish(Episode.take_over(there, under), ground.agent(player)).success
+
+
+_GROUNDS: dict[str, Ground | None] = {}
+"""The half that is played, at its hand-over."""
+
+
+def _ground(task: str, half: str, simulations: Simulations) -> Ground | None:
+    if (name := f"{task} {half}") not in _GROUNDS:
+        for each in filter(None, _GROUNDS.values()):
+            each.close()
+        _GROUNDS.clear()
+        _GROUNDS[name] = None
+        with suppress(TriggerNotReachedError):
+            _GROUNDS[name] = Ground.reach(CATALOGUE[task], half, SEED, simulations)
+    return _GROUNDS[name]
 
 
 def main() -> None:
@@ -136,7 +165,8 @@ def main() -> None:
         for (task, half), agent, level in product(halves, agents, levels):
             name = f"{agent} {task} {half} {level}"
             if name not in won and time.monotonic() - begun_s < parsed.for_s:
-                won[name] = played(agent, task, half, level, simulations, parsed.model, parsed.steps)
+                play = played if parsed.suite == Suite.STANDARD else controlled
+                won[name] = play(agent, task, half, level, simulations, parsed.model, parsed.steps)
                 write_whole(file, json.dumps(won, indent=1) + "\n")
     whole = [
         each for each in halves if all(won.get(f"{agent} {' '.join(each)} {level}") is not None
