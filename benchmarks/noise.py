@@ -8,7 +8,7 @@ of words to noise: unlike with ``--hear cabin`` alone, the ratio is set, whateve
 ``--suite voice --levels text,cabin``, pairs of that suite, in the noise of the drive:
 
 * ``careful`` takes words for the likeliest of those that the task can have, and then does all that its reference
-  solution does, questions and waiting included;
+  solution does, questions and waiting included, and makes it quieter where the driver has not understood it;
 * ``eager`` takes them so, too, but asks nothing before it acts, does what any voice says, and answers at length.
 """
 
@@ -38,7 +38,9 @@ from automotive_cosim.proof.hand_over import SETUP, Ground, finish
 from automotive_cosim.report.stats import bracketed, wilson
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.trial import run_trial
+from automotive_cosim.tasking.dialogue import PARDON
 from automotive_cosim.tasking.instance import Instance, draw
+from automotive_cosim.tasking.moves import Consult, Move, Open, Slide, Tap
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -51,6 +53,18 @@ TEXT = "text"
 LEVELS = (TEXT, *(f"{CLEAN_DB if level is None else level:g}" for level in LEVELS_DB))
 INSTANCES = 100
 """Of a task, among which the words are looked for."""
+
+
+def _shut(*windows: str) -> list[Move]:
+    return [Open("vehicle"), Tap("vehicle.tab.doors"), *(Slide(f"window.{each}", 0) for each in windows)]
+
+
+QUIETING: dict[str, list[Move]] = {
+    "windows": _shut("driver", "passenger", "rear_left", "rear_right"),
+    "motorway": _shut("driver"),
+    "music": [Open("media"), Slide("media.volume", 10)],
+}
+"""What makes it quieter, by where a task of the family ``voice_ask`` is asked."""
 
 
 class Listener(Oracle):
@@ -77,14 +91,20 @@ class Listener(Oracle):
             self._taken = min(self._known, key=lambda each: word_errors(each.goal, observation.goal)[0])
             super().brief(self._taken)
         elif len(observation.said) > self._heard and (replies := self._replies(observation.said[-1])):
-            self._taken = replies[0]
-            super().brief(self._taken, self._taken.moves[self.begun :])
+            asked = max(at for at, move in enumerate(self._taken.moves) if isinstance(move, Consult))
+            if word_errors(PARDON, observation.said[-1])[0] < 3:  # the driver has not understood: first less noise
+                super().brief(
+                    self._taken, [*QUIETING[self._taken.task.id.split("_")[-1]], *self._taken.moves[asked:]]
+                )
+            else:
+                self._taken = replies[0]
+                super().brief(self._taken, self._taken.moves[asked + 1 :])
         self._heard = len(observation.said)
         return super().act(observation)
 
     def _replies(self, heard: str) -> list[Instance]:
-        """Instances by how near an answer of the driver's is."""
-        answering = [each for each in self._known if each.half.topics]
+        """Instances in which a question is asked, by how near an answer of the driver's is."""
+        answering = [each for each in self._known if any(isinstance(move, Consult) for move in each.moves)]
         return sorted(answering, key=lambda each: min(
             word_errors(topic.reply, heard)[0] for topic in each.half.topics
         ))  # fmt: skip
