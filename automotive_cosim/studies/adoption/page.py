@@ -191,6 +191,10 @@ def warnings(study: AdoptionStudy) -> list[str]:
     failed = sum(each.failed for each in outcomes)
     if failed:
         found.append(f"The agent failed in {counted(failed, 'car')}, which drove on without it.")
+    refused = [car.refused for each in outcomes for car in each.cars if car.refused]
+    if refused:
+        answers, cars = counted(sum(refused), "answer"), counted(len(refused), "car")
+        found.append(f"{answers} in {cars} were no action, or the agent raised; the pages of these cars say why.")
     return found
 
 
