@@ -140,8 +140,8 @@ def parse_json(text: str | bytes, most_values: int | None = None) -> Any:
 
 
 def is_whole(line: bytes) -> bool:
-    """Whether a last line without its end is no line cut short: an object ends with its last brace, and an editor may
-    leave it at that."""
+    """Whether a last line without its end is no line cut short: an object ends with its last brace, and an editor
+    may leave it at that."""
     try:
         return isinstance(parse_json(line), dict)
     except ValueError:
