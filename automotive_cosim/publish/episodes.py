@@ -33,7 +33,7 @@ from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import shipped
-from automotive_cosim.tasking.dialogue import PARDON, TALKED_OVER, dialogue, questions
+from automotive_cosim.tasking.dialogue import dialogue, is_lost, questions
 from automotive_cosim.tasking.instance import Instance, phrased
 from automotive_cosim.voice.cabin import level_db, voices
 
@@ -227,8 +227,7 @@ def _answers(step: Json) -> Iterator[str]:
     """What the agent said in a step, if the driver understood it."""
     action = step["action"]
     if (
-        PARDON not in step.get(SAID, ())
-        and (step["feedback"] or {}).get("text") != TALKED_OVER
+        not is_lost(step.get(SAID, ()), (step["feedback"] or {}).get("text"))
         and isinstance(action, dict)
         and action.get("action_type") == ActionType.ANSWER
     ):

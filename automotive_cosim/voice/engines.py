@@ -31,6 +31,7 @@ import numpy.typing as npt
 
 from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.formats.files import file_sha256, read_bytes
+from automotive_cosim.formats.writing import remove
 
 Sound: TypeAlias = npt.NDArray[np.float32]
 """Samples from -1 to 1, ``RATE_HZ`` of them a second."""
@@ -89,7 +90,7 @@ def said(texts: Sequence[str]) -> list[Sound]:
                 raise UserError(f"the voice said {len(sounds)} of {len(texts)} sentences: {last.strip()}") from None
             file = Path(last.partition("Wrote ")[2].strip())
             sounds.append(from_wav(read_bytes(file), file.name))
-            file.unlink()
+            remove(file)
     return sounds
 
 

@@ -229,7 +229,7 @@ def run_seed(job: AdoptionJob, folder: Path) -> AdoptionRow:
     driven = {}
     with closing(warmed_up(job)) as warm:
         for number, share in enumerate(shares):
-            doing(f"driving with {share:.0%} equipped", share=number / len(shares))
+            doing(f"driving with {100 * share:g}% equipped", share=number / len(shares))
             driven[share] = drive(job, warm, share, keeps=folder)
     before = driven[0.0][1]
     return replace(
