@@ -2,6 +2,7 @@
 
     python benchmarks/fleet.py --cars 1 8 32 --copies 32
     python benchmarks/fleet.py --cars 8 128 --scenario town.sumocfg
+    python benchmarks/fleet.py --cars 8 128 --minutes 5
 
 Every car only looks on (`FlatDrive-v0`, lean, waits of two seconds), so the judges' do-nothing drives, which are
 simulations of their own from the first alert on, are not in the figures. Memory is that of all processes (PSS).
@@ -15,6 +16,7 @@ import time
 from contextlib import closing, suppress
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -43,33 +45,41 @@ COLUMNS = ("", "cars", "in traffic", "act in a step", "decisions a second", "ms 
 COLUMNS += ("MB", "MB a car")
 LEAST_STEPS = 20
 """The same at least."""
+LOOK_STEPS = 30
+"""After so many steps each, the memory is looked at."""
 
 
-def measured(kind: str, cars: int, scenario: str, steps: int) -> str:
-    """A row of Markdown."""
-    make = partial(FlatDriveEnv, FAMILY, scenario=scenario, lean=True)
+def measured(kind: str, cars: int, scenario: str, steps: int, minutes: float | None) -> str:
+    """A row of Markdown; with minutes, of a whole episode of drives that last so long."""
+    make = partial(FlatDriveEnv, FAMILY, scenario=scenario, lean=True, minutes=minutes)
     before_mb = pss_mb()
     if kind == "fleet":
-        envs = FleetVectorEnv(cars, families=FAMILY, scenario=scenario, lean=True)
+        envs = FleetVectorEnv(cars, families=FAMILY, scenario=scenario, lean=True, minutes=minutes)
     else:
         envs = ConcurrentVectorEnv([make] * cars)
     envs.reset(seed=1)
     waits = np.ones(cars, np.int64)
     entered: set[str] = set()
-    for number in range(ENTER_STEPS):
+    for number in range(0 if minutes else ENTER_STEPS):
         entered |= set(envs.fleet.agents) if isinstance(envs, FleetVectorEnv) else {str(car) for car in range(cars)}
         if number >= LEAST_STEPS and len(entered) == cars:
             break
         envs.step(waits)
     driven = len(envs.fleet.agents) if isinstance(envs, FleetVectorEnv) else cars
-    decisions, begun_s, worked_s = 0, time.perf_counter(), processor_s()
-    for _ in range(steps):
+    decisions, number, most_mb, begun_s, worked_s = 0, 0, 0.0, time.perf_counter(), processor_s()
+    info: dict[str, Any] = {}
+    while "final_obs" not in info if minutes else number < steps:
         info = envs.step(waits)[4]
         decisions += int(info["acted"].sum()) if kind == "fleet" else cars
-    took_s, memory_mb = time.perf_counter() - begun_s, pss_mb() - before_mb
-    worked_s = processor_s() - worked_s
+        number += 1
+        if isinstance(envs, FleetVectorEnv) and minutes:
+            entered |= set(envs.fleet.agents)
+            driven = len(entered)
+        if number % LOOK_STEPS == 0:
+            most_mb = max(most_mb, pss_mb() - before_mb)
+    took_s, worked_s = time.perf_counter() - begun_s, processor_s() - worked_s
     envs.close()
-    return told(kind, cars, driven, decisions, steps, took_s, worked_s, memory_mb)
+    return told(kind, cars, driven, decisions, number, took_s, worked_s, most_mb)
 
 
 def equipped(cars: int, scenario: str, steps: int, scale: float) -> str:
@@ -148,11 +158,12 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=30, help="steps to time")
     parser.add_argument("--equipped", type=int, nargs="*", default=[], help="cars that drive anyway, with cockpits")
     parser.add_argument("--scale", type=float, default=2.0, help="factor on the traffic of these")
+    parser.add_argument("--minutes", type=float, help="time whole episodes of fleets, of drives that last so long")
     given = parser.parse_args()
     print(f"| {' | '.join(COLUMNS)} |\n|---{(len(COLUMNS) - 1) * '|--:'}|")
     for kind, counts in (("fleet", given.cars), ("copies", given.copies)):
         for count in counts:
-            print(measured(kind, count, given.scenario, given.steps), flush=True)
+            print(measured(kind, count, given.scenario, given.steps, given.minutes), flush=True)
     for count in given.equipped:
         print(equipped(count, given.scenario, given.steps, given.scale), flush=True)
 

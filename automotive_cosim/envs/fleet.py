@@ -26,6 +26,7 @@ from automotive_cosim.envs.flat_drive import ACTIONS, FlatDriveEnv
 from automotive_cosim.envs.numbers import number_of
 from automotive_cosim.episode.fleet import Fleet
 from automotive_cosim.errors import ActionError, UserError
+from automotive_cosim.formats.words import shown
 from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.traffic.fork import RemoteRoad, RemoteTraffic
 from automotive_cosim.traffic.sumo import EGO
@@ -73,10 +74,10 @@ class FleetEnv(ParallelEnv):
             options: of these environments.
 
         Raises:
-            UserError: there is no car, or an option is wrong.
+            UserError: there is no car, or something else than a number of them, or an option is wrong.
         """
-        if cars < 1:
-            raise UserError(f"a fleet of {cars} cars was asked for; it needs at least one")
+        if not isinstance(cars, int) or cars < 1:
+            raise UserError(f"a fleet of {shown(cars)} cars was asked for; give a whole number from 1 on")
         kind: type[DrivesEnv[Any, Any]] = FlatDriveEnv if flat else DriveEnv
         self.render_mode = render_mode
         self.possible_agents = [f"car_{number}" for number in range(cars)]

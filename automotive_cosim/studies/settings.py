@@ -158,7 +158,8 @@ class AdoptionSettings(DrivenSettings):
 
     agent: Annotated[str, MinLen(1)] = "worthwhile:1.2:60"
     """The assistant: a rule for routes (never, always, delay:SECONDS, worthwhile:FACTOR:SECONDS, sumo), an agent of
-    drives, as in rule-perfect or NAME/MODEL, or package.module:Class with `act` or `advise`."""
+    drives, as in rule-perfect or NAME/MODEL, a FILE.jsonl of actions, or package.module:Class with `act` or
+    `advise`."""
     shares: Annotated[tuple[Annotated[float, Ge(0), Le(100)], ...], MinLen(1)] = (0.0, 5.0, 10.0, 25.0, 50.0, 100.0)
     """Per cent of the cars that have it; a greater share has the cars of every smaller one; 0 is always run."""
     driver: str = "average"

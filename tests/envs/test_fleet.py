@@ -105,5 +105,6 @@ def test_one_policy_sees_all_cars_in_a_vector(simulations: Simulations) -> None:
 
 
 def test_what_is_no_fleet_is_refused() -> None:
-    with pytest.raises(UserError, match="0 cars"):
-        FleetEnv(0)
+    for cars in (0, -3, 2.5, "3"):
+        with pytest.raises(UserError, match=f"of '?{cars}'? cars"):
+            FleetEnv(cars)  # type: ignore[arg-type]

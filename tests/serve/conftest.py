@@ -210,6 +210,40 @@ def write_study(folder: Path) -> Path:
     return folder
 
 
+def write_adoption(folder: Path) -> Path:
+    """A study of adoption with two equipped cars, of which one has lost its assistant."""
+    pytest.importorskip("automotive_cosim.studies")
+    from automotive_cosim.studies.adoption.adoption import (
+        AdoptionPlan,
+        AdoptionRow,
+        Cohort,
+        EquippedCar,
+        ShareOutcome,
+    )
+
+    plan = AdoptionPlan("grid", seeds=(1,), shares=(100.0,))
+    both = Cohort(
+        cars=2, arrived=2, time_s=60.0, before_s=70.0, lost_s=5.0, side=0.1, near_s_h=0.0, energy_wh_km=700.0
+    )
+    named = {"departs_s": 0.0, "time_s": 60.0, "arrived": True, "lost_s": 5.0, "driven_m": 500.0, "warnings": 0}
+    cars = (
+        EquippedCar(car="ego", before_s=70.0, reroutes=1, **named),
+        EquippedCar(car=HOSTILE, before_s=None, reroutes=0, error="ValueError: boom", **named),
+    )
+    outcome = ShareOutcome(
+        share=1.0, equipped=both, others=None, all=both, reroutes=1, warnings=0, hazards=0, failed=1, cars=cars
+    )
+    row = AdoptionRow(id="seed1", scenario="grid", seed=1, shares=(outcome,))
+    lines = road()
+    lines[5]["events"] = ["ego: another way, which the driver takes", f"{HOSTILE}: loses its assistant: boom"]
+    live = folder / "live" / "seed1-100"
+    live.mkdir(parents=True)
+    (live / "road.jsonl.gz").write_bytes(packed(lines))
+    (folder / "manifest.json").write_text(json.dumps({"format": 1, "plan": plan.as_json()}), encoding="utf-8")
+    (folder / "episodes.jsonl").write_text(json.dumps(as_json(row)) + "\n", encoding="utf-8")
+    return folder
+
+
 def write_live_drive(study: Path, drive: str, seconds: range = range(1, 8)) -> Path:
     """A drive of a running study as somebody sees it who watches."""
     folder = study / LIVE / drive

@@ -33,6 +33,7 @@ from .conftest import (
     result,
     road,
     step,
+    write_adoption,
     write_drive,
     write_evaluation,
     write_live_drive,
@@ -516,6 +517,23 @@ def test_a_running_study_is_watched_drive_after_drive(
     expect(page.locator("tbody tr")).to_have_count(2)
 
 
+def test_the_cars_of_a_fleet_are_on_one_map_and_each_opens(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_adoption(tmp_path / "town")
+    browser = serving(tmp_path)
+    page = opened(browser, f"#/fleet/{browser('/api/runs').json['records'][0]['id']}")
+    expect(page.locator(".about")).to_contain_text("2 equipped cars on the road")
+    expect(page.locator("tbody tr")).to_have_count(2)
+    expect(page.locator("tbody tr").first).to_contain_text(HOSTILE)
+    expect(page.locator("tbody td.no")).to_have_text("ValueError: boom")
+    page.get_by_role("link", name="ego").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("ego")
+    expect(page.locator(".about")).to_contain_text("72 km/h")
+    expect(page.locator(".events li")).to_have_count(1)
+    expect(page.locator(".events")).to_contain_text("another way, which the driver takes")
+
+
 def test_a_task_shows_its_reference_solution_as_pictures(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path
 ) -> None:
@@ -559,12 +577,13 @@ def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..
     write_evaluation(tmp_path / "mine")
     write_drive(tmp_path / "drive")
     write_study(tmp_path / "reroute")
+    write_adoption(tmp_path / "town")
     study = PeopleStudy(PeoplePlan(("heron",), ("hvac_fan_max",)), tmp_path / "study")
     browser = serving(tmp_path, game=Game(tmp_path), study=study)
     records = [each for each in browser("/api/runs").json["records"] if each["name"] != "study"]
-    run, mine, drive, reroute = (
-        next(each["id"] for each in records if each["kind"] == kind)
-        for kind in ("run", "evaluation", "drive", "study")
+    run, mine, drive, reroute, town = (
+        next(each["id"] for each in records if each["name"] == name)
+        for name in ("run", "mine", "drive", "reroute", "town")
     )
     pages = (
         "#/",
@@ -575,6 +594,8 @@ def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..
         f"#/beside/{mine}/one/{mine}/one",
         f"#/decisions/{reroute}",
         f"#/live/{reroute}",
+        f"#/fleet/{town}",
+        f"#/fleet/{town}/seed1-100/ego",
         f"#/decision/{reroute}/share0.6-seed0-at0-avenue-1",
         "#/tasks",
         "#/tasks/road_horn_abroad",

@@ -285,6 +285,14 @@ def test_an_assistants_errors_are_those_of_one_car(
         cars(tmp_path, "seed9-100")
 
 
+def test_a_file_of_actions_is_an_agent(tmp_path: Path) -> None:
+    path = tmp_path / "acts.jsonl"
+    with pytest.raises(UserError, match=r"acts\.jsonl"):
+        replace(PLAN, agent=str(path)).check()
+    path.write_text('{"action_type": "wait", "seconds": 5}')
+    replace(PLAN, agent=str(path)).check()
+
+
 def test_a_class_of_ones_own_advises_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     own = "tests.studies.test_adoption:Odd"
     replace(PLAN, agent=own).check()

@@ -33,9 +33,11 @@ from automotive_cosim.episode.specification import SCREEN, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, CosimError, OutOfBudgetError, UserError
 from automotive_cosim.formats.layout import LIVE
 from automotive_cosim.geo.forecast import drawn_weather
+from automotive_cosim.models import ChatModel
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import alone
 from automotive_cosim.run.row import JobRow, columns
+from automotive_cosim.run.script import read_script
 from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.wording import KINDS, read_line
@@ -51,6 +53,8 @@ from automotive_cosim.traffic.fork import Forked, RemoteRoad, RemoteTraffic
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.wire import pack_state
 
+SCRIPT = ".jsonl"
+"""How the name of a file of actions ends, one a line (``run.script``)."""
 SAME_HAZARD_S = 60.0
 """Warnings of one kind on one road within this time are of the same hazard: our choice."""
 T = TypeVar("T")
@@ -90,7 +94,7 @@ class AdoptionPlan(AdoptionSettings):
         profile(self.driver)
         rule = self.policy
         if rule.rule is PolicyRule.AGENT:
-            _ = own_assistant(rule.agent, self.seeds[0]) or make_agent(*named(rule.agent))
+            _ = own_assistant(rule.agent, self.seeds[0]) or agent_of(rule.agent)
         elif rule.rule not in BY_NEWS:
             raise UserError(f"--agent {self.agent} is no assistant: it knows what no car does; name another")
         for incident in self.scene().incidents[len(self.opened.incidents) :]:
@@ -289,6 +293,15 @@ def own_assistant(agent: str, seed: int) -> Assistant | None:
     return assistant
 
 
+def agent_of(name: str, settings: AgentSettings = AgentSettings(), model: ChatModel | None = None) -> Agent:  # noqa: B008, frozen
+    """An agent of drives by name, or one that plays the actions of a file.
+
+    Raises:
+        UserError: there is no such agent, or the file cannot be read.
+    """
+    return read_script(Path(name)) if name.endswith(SCRIPT) else make_agent(*named(name), settings, model)
+
+
 def within(seconds: float, call: Callable[[], T]) -> T:
     """The answer of an agent, which may be a class of the user's.
 
@@ -327,7 +340,8 @@ class _Drive:
         self._said = ShareLog()
         self._end_s = 0.0
         self._own = assistant or own_assistant(self._policy.agent, job.seed)
-        self._model = None if self._own else model_of(*named(self._policy.agent))
+        is_read = self._own is not None or self._policy.agent.endswith(SCRIPT)
+        self._model = None if is_read else model_of(*named(self._policy.agent))
 
     def go(self, share: float) -> ShareLog:
         """Drives for the plan's time; what the assistants did."""
@@ -447,7 +461,7 @@ class _Drive:
         """Lets an agent act in the cockpit of a car until the drive ends or the agent fails."""
         settings = AgentSettings(seed=self._job.seed)
         try:
-            agent = within(HANGS_S, lambda: make_agent(*named(self._policy.agent), settings, self._model))
+            agent = within(HANGS_S, lambda: agent_of(self._policy.agent, settings, self._model))
             session = self._session(car, agent)
             within(HANGS_S, lambda: agent.reset(session.goal))
         except UserError as error:
