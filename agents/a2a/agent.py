@@ -127,16 +127,18 @@ class A2AAgent:
         """Asks for the next answer; returns what its words alone do."""
         now = self._situation(seen, is_resulting=self._is_new or not self._asked)
         self._note(StageName.PERCEIVE, seen, now)
+        sounds = list(seen.sounds[0 if self._is_new else self._heard + 1 :])  # the wish is the first
         if self._is_new:
             system = f"{self._told(seen)}\n\n{self._situation(seen, is_spoken=False)}"
-            answer = self._say(seen, opening(system, prompt.driver_words(seen), self._tools.values()), USER)
+            opened = opening(system, prompt.driver_words(seen), self._tools.values())
+            answer = self._say(seen, [*opened, *sounds], USER)
         elif self._asked:
             contents = [self._results.get(call.id, NOT_DONE) for call in self._asked]
             contents[-1] += f"\n\n{now}"
-            answer = self._say(seen, results(self._asked, contents), ENVIRONMENT)
+            answer = self._say(seen, [*results(self._asked, contents), *sounds], ENVIRONMENT)
         else:
             words = "\n".join(seen.said[self._heard :])
-            answer = self._say(seen, [f"{words}\n\n{now}".strip()], USER)
+            answer = self._say(seen, [f"{words}\n\n{now}".strip(), *sounds], USER)
         self._is_new, self._heard = False, len(seen.said)
         self._asked, self._results = answer.calls, {}
         if len(answer.calls) > MOST_CALLS:

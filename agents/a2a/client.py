@@ -21,7 +21,7 @@ from urllib.parse import urlsplit, urlunsplit
 import httpx
 from a2a.client import ClientConfig, ClientFactory
 from a2a.client.card_resolver import parse_agent_card
-from a2a.helpers.proto_helpers import new_data_part, new_message, new_text_part
+from a2a.helpers.proto_helpers import new_data_part, new_message, new_raw_part, new_text_part
 from a2a.types import AgentCard, GetTaskRequest, Message, Part, Role, SendMessageRequest, Task, TaskState
 from google.protobuf.json_format import MessageToDict
 
@@ -81,14 +81,13 @@ class AgentLine:
         """Sends a message and returns the answer.
 
         Args:
-            parts: strings for text, all else for data.
+            parts: strings for text, bytes for a WAV file, all else for data.
             limit_s: wall seconds in which the whole answer has to be there.
 
         Raises:
             AgentError: it does not answer, not in time, or something that is no answer.
         """
-        made = [new_text_part(part) if isinstance(part, str) else new_data_part(part) for part in parts]
-        message = new_message(made, self._context, self._task or None, Role.ROLE_USER)
+        message = new_message(list(map(_made, parts)), self._context, self._task or None, Role.ROLE_USER)
         message.metadata.update({"source": source})
         try:
             return asyncio.run(asyncio.wait_for(self._exchange(message), limit_s))
@@ -232,6 +231,12 @@ async def _http(address: str) -> AsyncIterator[httpx.AsyncClient]:
 def _certificates() -> ssl.SSLContext:
     """Whom to trust; reading them takes longer than a short message."""
     return ssl.create_default_context()
+
+
+def _made(part: Any) -> Part:
+    if isinstance(part, bytes):
+        return new_raw_part(part, media_type="audio/wav")
+    return new_text_part(part) if isinstance(part, str) else new_data_part(part)
 
 
 def _check_answers(question: bytes, content: bytes) -> None:

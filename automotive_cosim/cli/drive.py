@@ -39,12 +39,14 @@ def run_drive(
     from automotive_cosim.drives.elsewhere import name_of
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.episode.own_prompt import instructions
+    from automotive_cosim.report.hearing import with_sounds
     from automotive_cosim.run.drive import DriveSetup
     from automotive_cosim.run.drive_row import DriveTrialRow
     from automotive_cosim.run.record import Recorder, check_folder, stamped_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.trial import Limits, run_trial
+    from automotive_cosim.run.trial_folder import read_steps
 
     under = Conditions.named(given(settings)).at(seed)
     limits = Limits().of_drives.within(limited.tokens, limited.seconds)
@@ -76,6 +78,9 @@ def run_drive(
         return
     console = Console(highlight=False)
     _tell(console, row, recorder.lines[-1]["result"]["timeline"])
+    _, silent = with_sounds(folder, read_steps(folder), recorder.goal)
+    if silent:
+        console.print(silent, soft_wrap=True)
     console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
 
 

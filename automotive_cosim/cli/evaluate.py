@@ -270,7 +270,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     limits = plan.limits
     table.add_row(
         "limits",
-        f"{counted(limits.steps, 'step')} ({limits.hard_steps} in the hard suite), "
+        f"{counted(limits.steps, 'step')} ({limits.hard_steps} in the suites hard and people), "
         f"{limits.sim_s:g} s simulated, {limits.wall_s:g} s real and "
         f"{limits.agent_s:g} s in the agent's process, {limits.model_s:g} s of the model, {limits.tokens:,} tokens",
     )

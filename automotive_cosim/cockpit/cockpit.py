@@ -287,7 +287,7 @@ class Cockpit:
         state.places_on = places_on
         for app in sorted(apps().values(), key=lambda app: app.turn):
             state.keep(*app.starts(state, rng))
-        bring(state, belongings)
+        bring(state, belongings, rng)
         state.keep(replace(state.of(Phone), expected=state.of(Directory).timeline(arrivals, rng)))
         state.changes = schedule(changes)
         state.lookout, state.driven_s = lookout, driven_s

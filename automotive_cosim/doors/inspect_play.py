@@ -10,7 +10,7 @@ from typing import Any
 
 import anyio
 import anyio.to_thread
-from inspect_ai.model import ChatMessageSystem, ChatMessageUser, Content, ContentImage, ContentText
+from inspect_ai.model import ChatMessageSystem, ChatMessageUser, Content, ContentAudio, ContentImage, ContentText
 from inspect_ai.solver import Generate, TaskState
 from inspect_ai.tool import ToolDef, ToolError, ToolParams
 
@@ -126,6 +126,9 @@ def _calls(service: EpisodeService, episode_id: str, function: Function) -> Any:
 
 
 def _content(turn: EpisodeTurn) -> list[Content]:
-    found: list[Content] = [ContentText(text=json.dumps(turn.as_json(), ensure_ascii=False))]
+    told = turn.as_json()
+    sounds = told.pop("sounds", ())
+    found: list[Content] = [ContentText(text=json.dumps(told, ensure_ascii=False))]
     data = (base64.b64encode(picture).decode() for picture in turn.pictures)
-    return [*found, *(ContentImage(image=f"data:image/png;base64,{each}") for each in data)]
+    found += (ContentImage(image=f"data:image/png;base64,{each}") for each in data)
+    return [*found, *(ContentAudio(audio=f"data:audio/wav;base64,{each}", format="wav") for each in sounds)]

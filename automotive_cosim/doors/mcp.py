@@ -18,7 +18,15 @@ from typing import Annotated, Any
 import anyio.from_thread
 from mcp.server.mcpserver import Context, MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
-from mcp_types import CallToolResult, ContentBlock, ImageContent, InputRequiredResult, TextContent, Tool
+from mcp_types import (
+    AudioContent,
+    CallToolResult,
+    ContentBlock,
+    ImageContent,
+    InputRequiredResult,
+    TextContent,
+    Tool,
+)
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from automotive_cosim import __version__
@@ -285,10 +293,13 @@ def _channels(names: list[str] | None) -> frozenset[Channel]:
 
 def _turn(turn: EpisodeTurn) -> CallToolResult:
     data = (base64.b64encode(picture).decode() for picture in turn.pictures)
-    return _result(turn.as_json(), *(ImageContent(type="image", data=each, mime_type="image/png") for each in data))
+    seen = (ImageContent(type="image", data=each, mime_type="image/png") for each in data)
+    told = turn.as_json()
+    heard = (AudioContent(type="audio", data=each, mime_type="audio/wav") for each in told.pop("sounds", ()))
+    return _result(told, *seen, *heard)
 
 
-def _result(value: Json, *pictures: ContentBlock) -> CallToolResult:
-    """A value for programs, and the same as text and pictures for models."""
+def _result(value: Json, *parts: ContentBlock) -> CallToolResult:
+    """A value for programs, and the same as text, pictures and sounds for models."""
     text = TextContent(type="text", text=json.dumps(value, ensure_ascii=False))
-    return CallToolResult(content=[text, *pictures], structured_content=value)
+    return CallToolResult(content=[text, *parts], structured_content=value)

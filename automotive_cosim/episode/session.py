@@ -48,7 +48,7 @@ from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
 from automotive_cosim.tasking.dialogue import NEUTRAL, PARDON, TOLD_HEARD, asks_again, spoken_s, understood
 from automotive_cosim.tasking.policy import Breach, Conduct, breaches
-from automotive_cosim.voice.cabin import driver_snr_db, is_understood, level_db
+from automotive_cosim.voice.cabin import driver_snr_db, is_understood, level_db, voices
 from automotive_cosim.voice.table import SPOKEN, came_from, heard, sounding
 
 R = TypeVar("R")
@@ -295,7 +295,15 @@ class Session:
     @property
     def _is_understood(self) -> bool:
         """Whether the driver understands what the car says now."""
-        return not self._hears or is_understood(self.world.moment)
+        noise_db = self._cabin_db
+        return noise_db is None or is_understood(self.world.moment, noise_db)
+
+    @property
+    def _cabin_db(self) -> float | None:
+        """How loud the cabin is now, dB(A); None if that is of no account."""
+        now = self.world.moment
+        spoken = ((step.moment.time_s, step.said) for step in self.steps)
+        return level_db(now, voices(spoken, now.time_s)) if self._hears else None
 
     def _is_topic(self, question: str) -> bool:
         """Whether the driver has an answer to it."""
@@ -340,7 +348,8 @@ class Session:
         remarks = self._remarks()
         self.remarks += remarks
         said += remarks
-        reached = reaching(said, self.setup, self.world.moment)
+        noise_db = self._cabin_db
+        reached = reaching(said, self.setup, noise_db)
         self.heard += reached
         begun_s = self.moments[0].time_s
         self.elements, self.observation = _seen(
@@ -353,14 +362,13 @@ class Session:
             self.heard,
             self.setup.conditions.policy,
             lean=self.setup.lean,
-            sounds=(*self.observation.sounds, *_sounds(said, self.setup, self.world.moment)),
+            sounds=(*self.observation.sounds, *_sounds(said, self.setup, noise_db)),
         )
-        moment = self.world.moment
         self.steps.append(
             trace.Step(
-                len(self.steps), moment, self.elements, action, feedback, self.thought_s, said,
+                len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s, said,
                 reached if self._hears else None,
-                level_db(moment) if self._hears else None,
+                noise_db,
             )
         )  # fmt: skip
         self.thought_s = 0.0
@@ -416,7 +424,8 @@ def beginning(
 ) -> dict[str, Any]:
     """The fields of a session that begins now, on the screen that its conditions ask for."""
     first, is_by_ear = world.moment, setup.conditions.hear.is_by_ear
-    (wish,) = reaching((goal,), setup, first)
+    noise_db = level_db(first) if is_by_ear else None
+    (wish,) = reaching((goal,), setup, noise_db)
     make = setup.conditions.make
     world.cockpit.fit(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
@@ -430,7 +439,7 @@ def beginning(
         feedback,
         policy=setup.conditions.policy,
         lean=setup.lean,
-        sounds=_sounds((goal,), setup, first),
+        sounds=_sounds((goal,), setup, noise_db),
     )
     return {
         "world": world,
@@ -450,31 +459,30 @@ def beginning(
                 None,
                 feedback,
                 heard=(wish,) if is_by_ear else None,
-                cabin_db=level_db(first) if is_by_ear else None,
+                cabin_db=noise_db,
             )
         ],
     }
 
 
-def reaching(said: tuple[str, ...], setup: SessionSetup, moment: Moment) -> tuple[str, ...]:
-    """What reaches the agent of words that are said at a moment.
+def reaching(said: tuple[str, ...], setup: SessionSetup, noise_db: float | None) -> tuple[str, ...]:
+    """What reaches the agent of words that are said in so much noise; None where they are text.
 
     Raises:
         InfrastructureError: they have not been recognised yet, and the extra ``voice`` is missing.
     """
-    if not setup.conditions.hear.is_by_ear:
+    if noise_db is None:
         return said
     if setup.conditions.hear is Hearing.AUDIO:
         return tuple(came_from(text) + SPOKEN for text in said)
-    snr_db = driver_snr_db(level_db(moment))
-    return tuple(heard(text, snr_db) for text in said)
+    return tuple(heard(text, driver_snr_db(noise_db)) for text in said)
 
 
-def _sounds(said: tuple[str, ...], setup: SessionSetup, moment: Moment) -> tuple[bytes, ...]:
+def _sounds(said: tuple[str, ...], setup: SessionSetup, noise_db: float | None) -> tuple[bytes, ...]:
     """The same as sound, for an agent that gets it."""
-    if setup.conditions.hear is not Hearing.AUDIO:
+    if noise_db is None or setup.conditions.hear is not Hearing.AUDIO:
         return ()
-    return tuple(sounding(text, driver_snr_db(level_db(moment))) for text in said)
+    return tuple(sounding(text, driver_snr_db(noise_db)) for text in said)
 
 
 def _seen(

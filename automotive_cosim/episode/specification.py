@@ -91,7 +91,7 @@ class EpisodeSpec(EpisodeSettings):
     conditions: Conditions = Conditions()  # noqa: RUF009, frozen
     """What the agent is given, and at what speed."""
     max_steps: Annotated[int, Ge(1)] | None = None
-    """Actions after which the episode is cut off; None takes the task's own limit, 20 or in the hard suite 40."""
+    """Actions after which the episode is cut off; None takes the task's own: 20, in hard and people 40."""
     max_sim_s: Annotated[float, Gt(0)] | None = None
     """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
     action_cost_s: Annotated[float, Gt(0)] = ACTION_COST_S

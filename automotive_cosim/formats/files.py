@@ -139,6 +139,15 @@ def parse_json(text: str | bytes, most_values: int | None = None) -> Any:
         raise ValueError("it is nested too deeply") from error
 
 
+def is_whole(line: bytes) -> bool:
+    """Whether a last line without its end is no line cut short: an object ends with its last brace, and an editor
+    may leave it at that."""
+    try:
+        return isinstance(parse_json(line), dict)
+    except ValueError:
+        return False
+
+
 def _values(text: str | bytes) -> int:
     """How many values a text of JSON can hold at most: commas and brackets in its texts are counted too."""
     if isinstance(text, str):

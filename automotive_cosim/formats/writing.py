@@ -22,7 +22,7 @@ from typing import IO
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
-from automotive_cosim.formats.files import open_file
+from automotive_cosim.formats.files import is_whole, open_file
 from automotive_cosim.formats.plain import plain
 
 LOOK_S = 0.05
@@ -144,7 +144,9 @@ def growing(path: Path, *, anew: bool = False) -> FileIO:
     size = file.seek(0, os.SEEK_END)
     begin = max(0, size - bounds.LINE_BYTES)
     whole = begin + os.pread(file.fileno(), size - begin, begin).rfind(b"\n") + 1
-    if whole < size:
+    if whole < size and is_whole(os.pread(file.fileno(), size - whole, whole)):
+        file.write(b"\n")
+    elif whole < size:
         file.truncate(whole)
     return file
 

@@ -182,8 +182,14 @@ def _inside(facts: RuleFacts, area: shapely.Polygon) -> bool | None:
 
 
 def _on_street(facts: RuleFacts, patterns: tuple[str, ...]) -> bool:
-    street = folded(facts.street)
-    return any(matches(street, pattern) for pattern in patterns)
+    return _is_named(facts.street, patterns)
+
+
+@lru_cache(maxsize=4096)
+def _is_named(street: str, patterns: tuple[str, ...]) -> bool:
+    """Cached, as a car asks every second, and of the same streets."""
+    name = folded(street)
+    return any(matches(name, pattern) for pattern in patterns)
 
 
 def _on_class(facts: RuleFacts, classes: tuple[str, ...]) -> bool | None:

@@ -1,10 +1,14 @@
 """What a model's GGUF file says about itself, read from its beginning, and which files are known to fit.
 
+A file that ends before its last tensor does is refused.
+
 The format: https://github.com/ggml-org/ggml/blob/master/docs/gguf.md.
 """
 
 from __future__ import annotations
 
+import math
+import os
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +21,10 @@ MAGIC = b"GGUF"
 SCALARS = {0: "B", 1: "b", 2: "H", 3: "h", 4: "I", 5: "i", 6: "f", 7: "?", 10: "Q", 11: "q", 12: "d"}
 TEXT, ARRAY = 8, 9
 MOST_KEYS, MOST_ITEMS, MOST_TEXT = 10_000, 10_000_000, 2**20
-"""More keys, items of an array or bytes of a text than any model has."""
+"""More keys, items of an array or bytes of a text than any model has; and no more tensors than keys."""
+BLOCKS = {0: (1, 4), 1: (1, 2), 2: (32, 18), 3: (32, 20), 6: (32, 22), 7: (32, 24), 8: (32, 34), 10: (256, 84),
+          11: (256, 110), 12: (256, 144), 13: (256, 176), 14: (256, 210), 30: (1, 2)}  # fmt: skip
+"""Values and bytes of a block, by a tensor's type (ggml.h); of others only the beginning is known."""
 
 
 class KnownFile(NamedTuple):
@@ -66,13 +73,18 @@ def read_model_file(path: Path) -> ModelFile:
                 raise UserError(
                     f"{path} is no GGUF file, by its first four bytes; give a file of llama.cpp's format"
                 )
-            version, _, count = struct.unpack("<IQQ", _read(file, 20))
-            if version not in (2, 3) or count > MOST_KEYS:
+            version, tensors, count = struct.unpack("<IQQ", _read(file, 20))
+            if version not in (2, 3) or max(count, tensors) > MOST_KEYS:
                 raise UserError(f"{path} is GGUF version {version} with {count} keys; versions 2 and 3 are read")
             told = dict(_pair(file) for _ in range(count))
+            ends = [_tensor_end(file) for _ in range(tensors)]
+            align = int(told.get("general.alignment", 32))
+            whole, size = -(-file.tell() // align) * align + max(ends, default=0), os.fstat(file.fileno()).st_size
+            if ends and size < whole:
+                raise ValueError(f"it has {size} bytes of {whole}")
     except OSError as error:
         raise UserError(f"cannot read {path}: {error.strerror or error}") from error
-    except (struct.error, ValueError, KeyError, MemoryError) as error:
+    except (struct.error, ValueError, TypeError, ArithmeticError, KeyError, MemoryError) as error:
         raise UserError(f"{path} is not a whole GGUF file ({error}); fetch it again") from error
     template = str(told.get("tokenizer.chat_template", ""))
     context = told.get(f"{told.get('general.architecture')}.context_length", 0)
@@ -87,6 +99,15 @@ def read_model_file(path: Path) -> ModelFile:
 def _pair(file: IO[bytes]) -> tuple[str, Any]:
     name = _text(file)
     return name, _value(file, *struct.unpack("<I", _read(file, 4)))
+
+
+def _tensor_end(file: IO[bytes]) -> int:
+    """Where a tensor's data ends, in bytes from where the first begins."""
+    _text(file)
+    (dimensions,) = struct.unpack("<I", _read(file, 4))
+    *sizes, kind, begin = struct.unpack(f"<{dimensions}QIQ", _read(file, 8 * dimensions + 12))
+    values, size = BLOCKS.get(kind, (2**63, 1))
+    return int(begin + max(1, math.prod(sizes) // values * size))
 
 
 def _read(file: IO[bytes], size: int) -> bytes:

@@ -33,9 +33,9 @@ from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import shipped
-from automotive_cosim.tasking.dialogue import PARDON, TALKED_OVER, dialogue, questions
+from automotive_cosim.tasking.dialogue import dialogue, is_lost, questions
 from automotive_cosim.tasking.instance import Instance, phrased
-from automotive_cosim.voice.cabin import level_db
+from automotive_cosim.voice.cabin import level_db, voices
 
 STEP_BYTES, SPARE_STEPS = 2**20, 4
 """Bytes that a step may have in a trace, on average: a full screen has 40 kB, a question to a model 100 kB."""
@@ -207,7 +207,8 @@ def _step_problems(file: str, steps: Sequence[Json], judged: Judged, hear: Heari
         if moment is None:
             yield Problem(file, f"step {number} time_s", "matches no stored moment")
             continue
-        cabin_db = level_db(moment) if hear.is_by_ear else None
+        spoken = voices(((each["time_s"], each.get(SAID, ())) for each in steps[:number]), moment.time_s)
+        cabin_db = level_db(moment, spoken) if hear.is_by_ear else None
         expected = Step(number, moment, (), None, Feedback(FeedbackCode.NONE, ""), cabin_db=cabin_db).as_json()
         yield from differences(file, f"step {number}", step, expected, FROM_MOMENTS, "its stored moment")
     if [step["time_s"] for step in steps] != sorted(step["time_s"] for step in steps):
@@ -226,8 +227,7 @@ def _answers(step: Json) -> Iterator[str]:
     """What the agent said in a step, if the driver understood it."""
     action = step["action"]
     if (
-        PARDON not in step.get(SAID, ())
-        and (step["feedback"] or {}).get("text") != TALKED_OVER
+        not is_lost(step.get(SAID, ()), (step["feedback"] or {}).get("text"))
         and isinstance(action, dict)
         and action.get("action_type") == ActionType.ANSWER
     ):

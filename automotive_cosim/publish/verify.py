@@ -24,7 +24,7 @@ import numpy as np
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import CosimError
+from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.formats.limited import LimitedProcesses
 from automotive_cosim.formats.writing import drafted
@@ -317,9 +317,15 @@ def _asked(again: Sequence[Replayed]) -> Iterator[str]:
 
 
 def _drawn(plan: Plan, key: bytes | None) -> list[str]:
-    """What was published before, to be compared."""
-    if key is None or plan.split != HIDDEN:
+    """What was published before, to be compared.
+
+    Raises:
+        UserError: there is a key, and the trials were drawn from none.
+    """
+    if key is None:
         return []
+    if plan.split != HIDDEN:
+        raise UserError(f"its runs were drawn from no key: the split is {plan.split}; leave --key out")
     return [f"{name} {digest}" for name, digest in zip(COMMITTED, commitment(key, plan), strict=True)]
 
 

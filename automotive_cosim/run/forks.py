@@ -37,7 +37,7 @@ from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.rerun import Player, Recorded, compare, played
-from automotive_cosim.tasking.dialogue import PARDON
+from automotive_cosim.tasking.dialogue import is_lost
 from automotive_cosim.traffic.chance import SEED_RANGE
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.running import fingerprint
@@ -130,7 +130,8 @@ class Forks(TrialObserver):
         """The do-nothing run from the beginning."""
         self._forks: list[TrialFork] = []
         self._given = self._asked = 0
-        self._seen: dict[tuple[int, frozenset[int], int], list[Moment]] = {}
+        self._seen: dict[tuple[int, frozenset[int], int, float], list[Moment]] = {}
+        """What was driven from a moment on without some acts, in a draw, until a time."""
         self.figures: dict[tuple[tuple[int, ...], int], Any] = {}
         """What was measured of acts, by their steps and the draw."""
         self._prints: dict[int, str] = {}
@@ -167,7 +168,8 @@ class Forks(TrialObserver):
         asked, self._asked = self._all_asked[self._asked :], len(self._all_asked)
         action, step = shot.step.action, shot.step
         at_s = new[0].time_s if new else self.session.steps[-2].moment.time_s + step.thought_s
-        said = None if action is None or PARDON in step.said else spoken(action, at_s)
+        lost = is_lost(step.said, step.feedback.text)
+        said = None if action is None or lost else spoken(action, at_s)
         acts = [*acts_of(new, step.moment.driving), *([] if said is None else [said])]
         if acts and len(self.acts) == MOST_ACTS:
             self.more += 1
@@ -203,17 +205,17 @@ class Forks(TrialObserver):
         one."""
         self.drive([left], draw)
         at, until_s = left[0].fork.at, self._until_s(left)
-        mine = self._seen.get((at, frozenset(), draw), self.moments[at:])
-        return [moment for moment in mine if moment.time_s <= until_s], self._seen[at, _steps(left), draw]
+        mine = self._seen.get((at, frozenset(), draw, until_s), self.moments[at:])
+        return [moment for moment in mine if moment.time_s <= until_s], self._seen[at, _steps(left), draw, until_s]
 
     def drive(self, several: Iterable[Sequence[ForkedAct]], draw: int) -> None:
         """Drives on, with some acts and without them and so on, what has not been driven: as many at the same time
         as there are cores."""
         wanted = {
-            (left[0].fork.at, gone, draw): (left, gone)
+            key: (left, gone)
             for left in several
             for gone in (frozenset[int](), _steps(left))
-            if (gone or draw) and (left[0].fork.at, gone, draw) not in self._seen
+            if (gone or draw) and (key := (left[0].fork.at, gone, draw, self._until_s(left))) not in self._seen
         }
         left_over = iter(wanted.items())
         while some := dict(islice(left_over, os.cpu_count() or 1)):

@@ -13,6 +13,7 @@ from automotive_cosim.agents import AgentSettings, Caller, model_of
 from automotive_cosim.agents.caller import heard
 from automotive_cosim.errors import ActionError, ModelError
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN, ChatMessage, ChatModel, ModelReply, ToolCall
+from automotive_cosim.models.gguf import read_model_file
 from automotive_cosim.models.local import Local
 from automotive_cosim.run.forecast import asks, longest_question, pictures_of
 from automotive_cosim.run.trial import TrialSetup
@@ -28,6 +29,7 @@ def misfits(jobs: Iterable[TrialSetup]) -> Iterator[str]:
 
     Raises:
         ModelError: a model does not answer at all.
+        UserError: the file of one in this process is none, or not whole.
     """
     tried = set()
     for job in jobs:
@@ -53,7 +55,7 @@ def _blank(width_px: int, height_px: int) -> bytes:
 def misfit(model: ChatModel, tokens: int, picture: bytes | None, *, calls: bool = False) -> str:
     """What of a run's questions a model does not take, and the option that helps; empty if it takes them.
 
-    A model in this process is not asked, since it knows its context.
+    A model in this process is not asked, since it knows its context; its file is looked at.
 
     Args:
         picture: a PNG file as big as a screenshot, if the questions have pictures.
@@ -61,8 +63,10 @@ def misfit(model: ChatModel, tokens: int, picture: bytes | None, *, calls: bool 
 
     Raises:
         ModelError: it does not answer at all.
+        UserError: its file is none, or not whole.
     """
     if isinstance(model, Local):
+        read_model_file(model.file)
         has_room = tokens <= model.context_tokens
         return "" if has_room else _too_long(model, tokens, f"its context leaves {model.context_tokens:,}")
     pictures = () if picture is None or not model.sees_pictures else (picture,)

@@ -109,6 +109,8 @@ class Recorder(TrialObserver):
         self.folder = folder
         self.lines: list[Json] = []
         """The trace, once the trial is over: the steps, then the result; nothing if there is nothing to judge."""
+        self.goal = ""
+        """What the driver says at first, once the agent takes over."""
         self.judged: JudgeInput | None = None
         """The judge's input, once the trial is over; None without a judgement."""
         self._trial = trial
@@ -129,7 +131,7 @@ class Recorder(TrialObserver):
 
     def begun(self, session: JudgedSession, shot: Shot) -> None:
         """Creates the folder and writes step 0."""
-        self._begun_s, self._session = shot.step.moment.time_s, session
+        self._begun_s, self._session, self.goal = shot.step.moment.time_s, session, session.goal
         if self.folder is not None:
             self._lines = _fresh(self.folder)
             self._write({"manifest": self._manifest()})

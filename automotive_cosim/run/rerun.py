@@ -127,7 +127,8 @@ def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
         )
     if len(matching) > 1:
         raise UserError(
-            f"{len(matching)} {what}s in {folder} begin with {asked!r}, such as {some}; give more of the id"
+            f"{len(matching)} {what}s in {folder}{f' begin with {asked!r}' if asked else ''}, such as {some}; give "
+            f"{'more of the' if asked else 'an'} id"
         )
     return matching[0]
 

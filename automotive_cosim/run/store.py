@@ -185,7 +185,8 @@ def read_rows(folder: Path, kind: RowKind[R]) -> dict[str, R]:
     if not path.is_file():
         return rows
     with files.open_file(path) as file:
-        *lines, _cut = file.read().split(b"\n")
+        *lines, last = file.read().split(b"\n")
+    lines += [last] if files.is_whole(last) else []
     for number, line in enumerate(lines, start=1):
         try:
             of = cast("type[R]", kind if isinstance(kind, type) else kind(line))

@@ -63,7 +63,7 @@ class Limits:
     steps: Annotated[int, Ge(1), Le(100_000)] = Suite.STANDARD.max_steps
     """Number of actions, including unreadable ones."""
     hard_steps: Annotated[int, Ge(1), Le(100_000)] = Suite.HARD.max_steps
-    """The same for the tasks of the hard suite."""
+    """The same for the suites hard and people."""
     sim_s: Annotated[float, Gt(0)] = 600.0
     """Simulated seconds from the hand-over, after which the episode is judged as it is."""
     wall_s: Annotated[float, Gt(0)] = 900.0

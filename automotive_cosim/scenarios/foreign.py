@@ -86,6 +86,7 @@ def _as_it_is(path: Path, to_be_moved: bool, files: tuple[object, ...]) -> Scena
     configuration = read_configuration(path)
     if not to_be_moved:
         return read_once(
+            "scenario",
             {path.absolute(), configuration.net.absolute()},
             lambda: _read(path, configuration, to_be_moved=to_be_moved),
         )

@@ -250,7 +250,8 @@ class Content:
         if entry.is_evaluation:
             manifest = read_manifest(entry.folder)
             kind = _kind(manifest["plan"])
-            done = (entry.folder / "episodes.jsonl").read_bytes().count(b"\n")
+            *lines, _cut = (entry.folder / "episodes.jsonl").read_bytes().split(b"\n")
+            done = len({line.partition(b",")[0] for line in lines})  # by id: what is run again has a line more
             started = manifest["starts"][-1]["started"]
             running = is_being_written(entry.folder / "lock")
             planned = manifest.get("episodes")

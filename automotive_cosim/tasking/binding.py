@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource, Road
+from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.context import GeoContext, answer
 from automotive_cosim.geo.place import Atlas, shipped
@@ -126,12 +127,19 @@ def _unit_at_home(half: Half) -> str:
 
 
 def rules_of(half: Half) -> tuple[Rule, ...]:
-    """The rules of law that a half names."""
+    """The rules of law that a half names.
+
+    Raises:
+        UnknownNameError: there is no such rule.
+    """
     return tuple(_rule(rule_id.strip(), shipped()) for rule_id in half.rule.split(","))
 
 
 def _rule(rule_id: str, atlas: Atlas) -> Rule:
-    return next(rule for entry in atlas.country(rule_id[:2]) for rule in entry.rules if rule.id == rule_id)
+    known = {rule.id: rule for entry in atlas.country(rule_id[:2]) for rule in entry.rules}
+    if rule_id not in known:
+        raise UnknownNameError("rule of law", rule_id, known, "automotive-cosim show context")
+    return known[rule_id]
 
 
 def _law_here(rule: Rule, context: GeoContext) -> str:

@@ -353,12 +353,19 @@ def not_asked(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
 @goal(lambda classes: f"no question but on a {' or '.join(classes)} road", writes=lambda classes: frozenset())
 def asked_on(start: Moment, now: Moment, trace: Sequence[Moment], classes: tuple[str, ...]) -> bool:
     """Every question to the driver was begun on a road of these classes, such as where nobody has to merge."""
-    begun = [len(questions(start, moment)) for moment in trace]
-    return all(
-        moment.driving.road.road_class in classes
-        for before, count, moment in zip([0, *begun], begun, trace, strict=False)
-        if count > before
-    )
+    return all(moment.driving.road.road_class in classes for moment in _asked_at(trace))
+
+
+@goal("no question while a siren is near", writes=frozenset)
+def asked_without_siren(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+    """No question to the driver was begun while a vehicle with blue lights was coming up from behind."""
+    return all(moment.driving.around.emergency_behind is None for moment in _asked_at(trace))
+
+
+def _asked_at(trace: Sequence[Moment]) -> Iterator[Moment]:
+    """The moments at which the driver had just been asked."""
+    begun = [len(questions(trace[0], moment)) for moment in trace]
+    return (moment for before, count, moment in zip([0, *begun], begun, trace, strict=False) if count > before)
 
 
 def asked_in(check: Check) -> Iterator[Topic]:

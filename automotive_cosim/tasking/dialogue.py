@@ -174,11 +174,21 @@ def asks_again(question: str) -> bool:
     return _AGAIN.search(question.casefold().replace("’", "'")) is not None
 
 
+def is_lost(said: Collection[str], feedback: str | None) -> bool:
+    """Whether the driver did not understand what the agent said to him in a step, or talked over it.
+
+    Args:
+        said: what he said in it.
+        feedback: what the agent was told.
+    """
+    return PARDON in said or feedback == TALKED_OVER
+
+
 def understood(step: Step) -> tuple[str, ...]:
-    """What the agent told the driver in a step; nothing if he did not understand it, or talked over it."""
+    """What the agent told the driver in a step; nothing if it was lost."""
     action = step.action
-    is_told = action is not None and action.action_type is ActionType.ANSWER and PARDON not in step.said
-    is_told = is_told and (step.feedback is None or step.feedback.text != TALKED_OVER)
+    is_told = action is not None and action.action_type is ActionType.ANSWER
+    is_told = is_told and not is_lost(step.said, step.feedback.text)
     return (action.text or "",) if action is not None and is_told else ()
 
 

@@ -8,6 +8,7 @@ import tomllib
 import traceback
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import fields, is_dataclass
+from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,10 +22,11 @@ from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.files import open_file
 from automotive_cosim.formats.toml import Document, read_toml
 from automotive_cosim.scenarios.reader import shipped
+from automotive_cosim.tasking.binding import rules_of
 from automotive_cosim.tasking.moves import Open
 from automotive_cosim.tasking.reading import shared, tasks_in
 from automotive_cosim.tasking.sets import Suite
-from automotive_cosim.tasking.task import Half, Module, Task
+from automotive_cosim.tasking.task import Basis, Half, Module, Task
 
 
 @cache
@@ -34,9 +36,19 @@ def data_keys() -> frozenset[str]:
     return frozenset(Cockpit(nowhere, rng=np.random.default_rng(0)).commands())
 
 
-def check(half: Half) -> Iterator[tuple[str, UnknownNameError]]:
-    """The names in a half that are unknown, each with the field that it is in."""
+def check(half: Half) -> Iterator[tuple[str, UserError]]:
+    """The names in a half that are unknown and the dates that are none, each with the field that it is in."""
     start = half.start
+    try:
+        if start.start is not None and datetime.fromisoformat(start.start).tzinfo is not None:
+            raise ValueError
+    except ValueError:
+        told = f"start is {start.start!r}; it must be a local date and time, as in 2026-06-16T12:30:00"
+        yield "start", UserError(told)
+    try:
+        _ = half.basis is Basis.LAW and rules_of(half)
+    except UserError as error:
+        yield "basis", error
     if start.scenario not in shipped() and not os.path.exists(start.scenario):  # noqa: PTH110, false if too long
         yield "start", UnknownNameError("scenario", start.scenario, shipped(), "automotive-cosim scenarios list")
     for field, ways in (("moves", (half.moves,)), ("ways", half.ways), ("slips", half.slips)):

@@ -15,6 +15,7 @@ family: one task for each of its tables, named after both, which say what differ
 from __future__ import annotations
 
 import inspect
+import operator
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -580,20 +581,20 @@ def _limited(kind: Any, limits: Sequence[Any]) -> _Decoder:
     def decode(reader: _Reader, value: Any) -> Any:
         found = read(reader, value)
         for each in limits:
-            for name, holds in _LIMITS.items():
+            for name, (told, holds) in _LIMITS.items():
                 bound = getattr(each, name, None)
                 if bound is not None and not isinstance(found, Param) and not holds(found, bound):
-                    raise UserError(f"is {value!r}; it must be {name} {bound:g}")
+                    raise UserError(f"is {value!r}; it must be {told} {bound:g}")
         return found
 
     return decode
 
 
-_LIMITS: Mapping[str, Callable[[Any, Any], bool]] = {
-    "gt": lambda value, bound: bool(value > bound),
-    "ge": lambda value, bound: bool(value >= bound),
-    "lt": lambda value, bound: bool(value < bound),
-    "le": lambda value, bound: bool(value <= bound),
+_LIMITS: Mapping[str, tuple[str, Callable[[Any, Any], bool]]] = {
+    "gt": ("above", operator.gt),
+    "ge": ("at least", operator.ge),
+    "lt": ("below", operator.lt),
+    "le": ("at most", operator.le),
 }
 
 

@@ -22,12 +22,12 @@ class Suite(StrEnum):
     VOICE = "voice"
     """Pairs in which the cabin's sound decides, or who said it; they are run with ``--hear cabin``."""
     PEOPLE = "people"
-    """Pairs in which those aboard react to what they notice, and one of them decides what holds."""
+    """Pairs in which those aboard react to what they notice, or have told the car what holds over four weeks."""
 
     @property
     def max_steps(self) -> int:
         """Default limit of actions per episode."""
-        return 40 if self is Suite.HARD else 20
+        return 40 if self in (Suite.HARD, Suite.PEOPLE) else 20
 
 
 class Split(StrEnum):

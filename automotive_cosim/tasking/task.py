@@ -10,7 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
+from typing import Annotated, Any
+
+from annotated_types import Ge, Gt, Le
 
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.belongings import NOTHING, Belongings
@@ -150,7 +152,7 @@ class Differs(StrEnum):
 class Deadline:
     """Simulated seconds from the trigger by which the goal must hold, and why that many."""
 
-    seconds: float
+    seconds: Annotated[float, Gt(0)]
     reason: str
 
 
@@ -160,7 +162,7 @@ class Start:
 
     scenario: str
     trip: str
-    origin: tuple[float, float] | None = None
+    origin: tuple[Annotated[float, Ge(-180), Le(180)], Annotated[float, Ge(-90), Le(90)]] | None = None
     """Longitude and latitude that the middle of the scenario's network is moved to, with the law, the clock and the
     climate of that place; None leaves it where it is. Both halves of a translated pair have one, because a scenario
     that has not been moved warms up in its own weather."""

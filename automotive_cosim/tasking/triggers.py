@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Concatenate, ParamSpec, Protocol
+from typing import Annotated, Any, Concatenate, ParamSpec, Protocol
+
+from annotated_types import Ge, Gt
 
 from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import ENERGY, MOTION, Signal
@@ -37,8 +39,8 @@ class Trigger:
     """The situation that starts a task: ``condition`` has held for ``for_s`` without interruption."""
 
     condition: TriggerCondition
-    for_s: float
-    within_s: float
+    for_s: Annotated[float, Ge(0)]
+    within_s: Annotated[float, Gt(0)]
     """Simulated seconds from departure after which the trigger counts as not reached."""
     after_s: float = 0.0
     """Simulated seconds from departure before which it does not count: with it, both halves of a pair have been

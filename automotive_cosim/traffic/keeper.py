@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
 
 from automotive_cosim.contracts import RoadNetwork
-from automotive_cosim.errors import CosimError, SetupError, UserError
+from automotive_cosim.errors import CosimError, SetupError, TrafficError, UserError
 from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.formats.writing import locked, make_folder, remove
 from automotive_cosim.traffic.base import WarmUpProgress
@@ -56,7 +56,8 @@ T = TypeVar("T")
 
 @dataclass(slots=True)
 class _Kept:
-    """Warm traffic; made by whoever holds the lock first."""
+    """Warm traffic; made by whoever holds the lock first. It ends with the last reference to it, so that nobody's
+    copy fails because it is kept no longer; copies live on."""
 
     lock: threading.Lock = field(default_factory=threading.Lock)
     setup: Setup | None = None
@@ -73,11 +74,6 @@ class _Kept:
         used_min = (time.monotonic() - self.used_s) / 60
         return f"{what}: {self.process.memory_bytes / 1e6:.0f} MB, used {used_min:.0f} min ago"
 
-    def close(self) -> None:
-        """Ends it; copies live on."""
-        if self.process is not None:
-            self.process.close()
-
 
 class _Keeper:
     """The process itself."""
@@ -85,7 +81,7 @@ class _Keeper:
     def __init__(self, minutes: float) -> None:
         self._minutes = minutes
         self._kept: OrderedDict[_Wanted, _Kept] = OrderedDict()
-        self._read: OrderedDict[_Files, object] = OrderedDict()
+        self._read: OrderedDict[tuple[str, _Files], object] = OrderedDict()
         """What was read from files, by their content."""
         self._lock = threading.Lock()
         self._used_s = time.monotonic()
@@ -98,15 +94,13 @@ class _Keeper:
             with suppress(TimeoutError):
                 connection, _ = listening.accept()
                 threading.Thread(target=self._answer, args=(connection,), daemon=True).start()
-        for each in self._kept.values():
-            each.close()
 
     def _is_needed(self) -> bool:
         with self._lock:
             old_s = time.monotonic() - 60 * self._minutes
             for wanted, kept in list(self._kept.items()):
                 if kept.used_s < old_s and not kept.lock.locked():
-                    self._kept.pop(wanted).close()
+                    del self._kept[wanted]
             return bool(self._kept) or self._used_s > old_s
 
     def _answer(self, connection: socket.socket) -> None:
@@ -122,8 +116,10 @@ class _Keeper:
                     channel.send([each.line() for each in self._kept.values()])
                 return
             if what == "read":
-                channel.send(self._read.get(given))
-                self._read[given] = channel.receive()
+                found = self._read.get(given)
+                channel.send(found)
+                if found is None:
+                    self._read[given] = channel.receive()
                 if len(self._read) > MOST_READ:
                     self._read.popitem(last=False)
                 return
@@ -138,23 +134,28 @@ class _Keeper:
         with self._lock:
             kept = self._kept.setdefault(wanted, _Kept())
             self._kept.move_to_end(wanted)
-        with kept.lock:
-            kept.used_s = time.monotonic()
-            if kept.process is None or kept.process.is_broken:
+        is_whole = False
+        try:
+            with kept.lock:
+                kept.used_s = time.monotonic()
+                if kept.process is None or kept.process.is_broken:
 
-                def progress(done_s: float, total_s: float) -> None:
-                    with suppress(ClosedError):  # who comes later gets it
-                        channel.send(("progress", (done_s, total_s)))
+                    def progress(done_s: float, total_s: float) -> None:
+                        with suppress(ClosedError):  # who comes later gets it
+                            channel.send(("progress", (done_s, total_s)))
 
-                kept.setup, (kept.process, kept.network) = setup, RemoteProcess.start(setup, progress, TIMEOUT_S)
-            copy = kept.process.fork(None)
-            kept.used_s = self._used_s = time.monotonic()
-            found = kept.setup, kept.network, copy.pid
-        with self._lock:
-            if _wanted(setup) != wanted:  # somebody has changed its files meanwhile
-                self._kept.pop(wanted, kept).close()
-            while len(self._kept) > 1 and self._memory_bytes() > self._most_bytes:
-                self._kept.popitem(last=False)[1].close()
+                    kept.setup = setup
+                    kept.process, kept.network = RemoteProcess.start(setup, progress, TIMEOUT_S)
+                copy = kept.process.fork(None)
+                kept.used_s = self._used_s = time.monotonic()
+                found = kept.setup, kept.network, copy.pid
+            is_whole = _wanted(setup) == wanted  # or somebody has changed its files meanwhile
+        finally:
+            with self._lock:
+                if not is_whole:
+                    self._kept.pop(wanted, None)
+                while len(self._kept) > 1 and self._memory_bytes() > self._most_bytes:
+                    self._kept.popitem(last=False)
         channel.send(("done", found))
         copy.hand_over(channel)
 
@@ -165,25 +166,30 @@ class _Keeper:
 def started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
     """What ``RemoteProcess.start`` does, by a copy from the keeper if there is one; raises like it."""
     if setup.outputs is None and setup.flow_s is None and setup.scenario.config.is_absolute():
-        with suppress(ClosedError, OSError, SetupError):  # there is none, or not one of one's own
+        with suppress(ClosedError, OSError, SetupError, TrafficError):  # there is none of one's own, or it fails
             return _copied(setup, progress, timeout_s)
     return RemoteProcess.start(setup, progress, timeout_s)
 
 
-def read_once(files: Iterable[Path], read: Callable[[], T]) -> T:
+def read_once(kind: str, files: Iterable[Path], read: Callable[[], T]) -> T:
     """What is read from some files and nothing else: the keeper, if there is one, says what it was the last time.
 
     Args:
+        kind: of what is read, by a name of its own.
         files: all that is read.
         read: reads them; small, and the same for the same content.
     """
     with suppress(ClosedError, OSError, SetupError), _connected() as connection:
         channel = MessageChannel(connection)
-        channel.send(("read", _digests(files)))
+        seen = _digests(files)
+        channel.send(("read", (kind, seen)))
         found: T | None = channel.receive()
         if found is None:
             found = read()
-        channel.send(found)
+            if _digests(files) == seen:  # or somebody has changed them meanwhile
+                channel.send(found)
+                with suppress(ClosedError):  # once it has that
+                    channel.receive()
         return found
     return read()
 
@@ -225,6 +231,7 @@ def _copied(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> 
             raise kind.__new__(kind, text)  # the text is whole already
         theirs, network, pid = value
         process = RemoteProcess.taken(channel, pid, timeout_s)
+    process.call("find", sys.path)
     if theirs != setup:
         network = process.call("move", setup.scenario)
     return process, network
@@ -241,7 +248,9 @@ def _digests(files: Iterable[Path]) -> _Files:
 
 
 def _home() -> Path:
-    return Path(os.environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir(), f"automotive_cosim-{os.getuid()}")
+    given = Path(os.environ.get("XDG_RUNTIME_DIR", ""))
+    home = given if given.is_absolute() and given.is_dir() else Path(tempfile.gettempdir())
+    return home / f"automotive_cosim-{os.getuid()}"
 
 
 def _address(program: str) -> Path:
@@ -262,10 +271,10 @@ def _address(program: str) -> Path:
 def _program() -> str:
     """A digest of code and versions: processes exchange objects only if it is the same."""
     package = Path(__file__).parents[1]
-    seen: list[Any] = [sys.version, sys.path, str(package), importlib.metadata.version("libsumo")]
-    for folder in (package, *(each for each in package.iterdir() if each.is_dir())):
-        code = sorted(folder.glob("*.py"))
-        seen += ((each.name, (about := each.stat()).st_size, about.st_mtime_ns) for each in code)
+    seen: list[Any] = [sys.version, sys.prefix, os.environ.get("PYTHONPATH"), str(package)]
+    seen += [importlib.metadata.version("libsumo")]
+    for each in sorted(package.rglob("*.py")):
+        seen += str(each), (about := each.stat()).st_size, about.st_mtime_ns
     return hashlib.sha256(repr(seen).encode()).hexdigest()[:16]
 
 
@@ -308,7 +317,11 @@ _CHILDREN: list[subprocess.Popen[bytes]] = []
 
 
 def _start(minutes: float) -> None:
-    """Starts a keeper, and waits until it listens or has ended, as a second one does."""
+    """Starts a keeper, and waits until it listens or has ended, as a second one does.
+
+    Raises:
+        SetupError: it does not start.
+    """
     with tempfile.TemporaryFile() as ready:
         popen = subprocess.Popen(
             [sys.executable, "-P", "-m", "automotive_cosim.traffic.keeper", _program(), str(minutes)],
@@ -316,27 +329,34 @@ def _start(minutes: float) -> None:
             cwd="/",
             stdin=subprocess.DEVNULL,
             stdout=ready,
-            stderr=subprocess.DEVNULL,
+            stderr=ready,
             start_new_session=True,
         )
         _CHILDREN.append(popen)
         while popen.poll() is None and not os.fstat(ready.fileno()).st_size:
             time.sleep(0.02)
+        if popen.poll():
+            ready.seek(0)
+            why = ready.read().decode("utf-8", "replace").strip().splitlines() or [f"exit code {popen.poll()}"]
+            raise SetupError(f"no traffic can be kept in {_home()}: {why[-1]}; commands run without it")
 
 
 def main() -> None:
     """Keeps for a program, the first argument, and for the minutes that are the second."""
     os.umask(0o077)
-    make_folder(_home())
-    address = _address(sys.argv[1])
-    with suppress(UserError), locked(address.with_suffix(".lock"), "warm traffic"):
-        remove(address)
-        with socket.socket(socket.AF_UNIX) as listening:
-            _at(address, listening.bind)
-            listening.listen()
-            print("listening", flush=True)
-            _Keeper(float(sys.argv[2])).serve(listening)
-        remove(address)
+    try:
+        make_folder(_home())
+        address = _address(sys.argv[1])
+        with suppress(UserError), locked(address.with_suffix(".lock"), "warm traffic"):
+            remove(address)
+            with socket.socket(socket.AF_UNIX) as listening:
+                _at(address, listening.bind)
+                listening.listen()
+                print("listening", flush=True)
+                _Keeper(float(sys.argv[2])).serve(listening)
+            remove(address)
+    except OSError as error:
+        sys.exit(error.strerror or str(error))
 
 
 if __name__ == "__main__":

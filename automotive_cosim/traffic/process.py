@@ -183,6 +183,10 @@ class Server:
 
     # --- calls of who extends it ----------------------------------------------------------------------------
 
+    def do_find(self, folders: list[str]) -> None:
+        """Looks for the modules of such calls where whoever uses it from now on does."""
+        sys.path[:] = folders
+
     def do_call(self, call: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
         """Calls a function with what runs here."""
         return call(self._running, *arguments, **named)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from functools import lru_cache
 from operator import attrgetter
 from typing import Any, TypeAlias
 
@@ -39,7 +40,9 @@ _OTHER, _LIGHT, _EVENT, _SEEN = (_getter(kind) for kind in (OtherVehicle, Traffi
 _ROAD_AT, _AHEAD_AT, _AROUND_AT = (
     [f.name for f in fields(DrivingState)].index(n) for n in ("road", "ahead", "around")
 )
-_LIGHT_AT = [field.name for field in fields(RoadAhead)].index("next_light")
+_LIGHT_AT, _ROUTE_AT, _SLOW_AT = (
+    [f.name for f in fields(RoadAhead)].index(n) for n in ("next_light", "route_edges", "slow_edges")
+)
 _OTHERS = 4
 """The first fields of ``Around`` are other vehicles."""
 
@@ -60,11 +63,18 @@ def unpack_state(packed: Packed) -> DrivingState:
     row, ahead, around = list(packed), list(packed[_AHEAD_AT]), packed[_AROUND_AT]
     light = ahead[_LIGHT_AT]
     ahead[_LIGHT_AT] = light and make_light(*light)
+    ahead[_ROUTE_AT], ahead[_SLOW_AT] = _same(ahead[_ROUTE_AT]), _same(ahead[_SLOW_AT])
     row[_ROAD_AT] = make_road(*row[_ROAD_AT])
     row[_AHEAD_AT] = make_ahead(*ahead)
     others: Packed = tuple(other and make_other(*other) for other in around[:_OTHERS])
     row[_AROUND_AT] = make_around(*others, *around[_OTHERS:])
     return make_state(*row)
+
+
+@lru_cache(maxsize=512)
+def _same(edges: Packed) -> Packed:
+    """The same route or traffic news as before, if they are: of what a drive keeps, copies of them were a third."""
+    return edges
 
 
 def pack_advance(advance: Advance) -> Packed:

@@ -12,6 +12,7 @@ Levels in dB(A) at the driver's head, to first order; sources add up by their en
 | media | 80 + 40 lg(share of full volume) |
 | a call | 65, whoever is on the phone |
 | siren | 102 - 20 lg(distance / 30 m), 23 less with all shut, and less of that with openings |
+| voices | while others aboard speak, each as loud as the driver's a metre away; the radio's are media |
 
 Sources, in that order: a parked electric car (an assumption); the middle of what Auto Bild measured at 100 km/h
 (2010 to 2012: 58 to 78 dB(A)), with the slope of rolling noise in CNOSSOS-EU (Directive (EU) 2015/996), and
@@ -22,7 +23,8 @@ assumption); rain by the logarithm of its rate, as measured under roofs in natur
 dB(A) at full blower (an assumption of the size in Mavuri et al. 2008, SAE World Congress); volume as an audio
 taper, and voices on a phone as loud as a raised voice (assumptions); sirens (Flesch et al. 1986, NIOSHTIC
 00177994: 99 to 105 dB(A) at 100 feet), and the side of an ambulance as the insulation of a car (Oliveira et al.
-2013, Building Acoustics 20: 23 dB(A)).
+2013, Building Acoustics 20: 23 dB(A)); people's voices by their effort, 60 dB(A) a metre away, and more in noise
+(ISO 9921:2003).
 """
 
 from __future__ import annotations
@@ -34,6 +36,8 @@ from typing import Any
 from automotive_cosim.cockpit.signals import CABIN, CALL, HVAC, MEDIA, VOICE
 from automotive_cosim.contracts.plain import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.dialogue import spoken_s
+from automotive_cosim.voice.table import came_from
 
 REST_DB = 40.0
 OPENINGS = (
@@ -60,11 +64,18 @@ UNDERSTOOD = 0.45
 """Speech intelligibility index below which communication is poor (ANSI S3.5-1997)."""
 
 
-def sources(moment: Moment) -> Iterator[tuple[str, float]]:
-    """What is heard in the cabin, and each level in dB(A)."""
+def sources(moment: Moment, voices: int = 0) -> Iterator[tuple[str, float]]:
+    """What is heard in the cabin, and each level in dB(A).
+
+    Args:
+        voices: how many people speak besides the driver.
+    """
     siren = moment.driving.around.emergency_behind
     kmh, rain_mm_h = moment.driving.speed_mps * KMH_PER_MPS, moment.weather.precipitation
-    return levels(moment.signals, kmh, rain_mm_h, None if siren is None else siren.gap_m)
+    found = dict(levels(moment.signals, kmh, rain_mm_h, None if siren is None else siren.gap_m))
+    yield from found.items()
+    if voices:
+        yield "voices", _voice_db(summed_db(found.items())) + 10 * math.log10(voices)
 
 
 def levels(
@@ -91,9 +102,20 @@ def levels(
         yield "siren", 102 - 20 * math.log10(max(siren_m, 3.0) / 30) + min(0.0, through)
 
 
-def level_db(moment: Moment) -> float:
-    """How loud the cabin is, dB(A)."""
-    return summed_db(sources(moment))
+def level_db(moment: Moment, voices: int = 0) -> float:
+    """How loud the cabin is, dB(A), while so many people speak besides the driver."""
+    return summed_db(sources(moment, voices))
+
+
+def voices(said: Iterable[tuple[float, Iterable[str]]], now_s: float) -> int:
+    """How many people besides the driver speak now.
+
+    Args:
+        said: seconds, and what was said from then on.
+    """
+    texts = ((at_s, text, came_from(text)) for at_s, every in said for text in every)
+    others = ((at_s, spoken_s(text[len(seat) :])) for at_s, text, seat in texts if seat.endswith("seat: "))
+    return sum(at_s <= now_s < at_s + lasts_s for at_s, lasts_s in others)
 
 
 def summed_db(found: Iterable[tuple[str, float]]) -> float:
@@ -103,17 +125,21 @@ def summed_db(found: Iterable[tuple[str, float]]) -> float:
 
 def driver_snr_db(noise_db: float) -> float:
     """The driver's voice above the noise, at the microphone."""
-    return min(NORMAL_DB + _raised_db(noise_db), LOUDEST_DB) + CLOSE_DB - noise_db
+    return _voice_db(noise_db) + CLOSE_DB - noise_db
 
 
-def is_understood(moment: Moment) -> bool:
+def is_understood(moment: Moment, noise_db: float) -> bool:
     """Whether the driver understands the car's voice, by the speech intelligibility index of ANSI S3.5-1997 in a
     single band, in which every decibel from -15 to 15 counts a thirtieth."""
-    volume, noise_db = moment.signals[VOICE.GUIDANCE_VOLUME.path], level_db(moment)
+    volume = moment.signals[VOICE.GUIDANCE_VOLUME.path]
     if not volume:
         return False
     snr_db = LOUDSPEAKER_DB + 40 * math.log10(volume / 50) + _raised_db(noise_db) - noise_db
     return min(1.0, max(0.0, (snr_db + 15) / 30)) >= UNDERSTOOD
+
+
+def _voice_db(noise_db: float) -> float:
+    return min(NORMAL_DB + _raised_db(noise_db), LOUDEST_DB)
 
 
 def _raised_db(noise_db: float) -> float:

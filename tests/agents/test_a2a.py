@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 import socket
@@ -113,6 +114,23 @@ def test_a_task_is_told_as_car_bench_tells_it_and_calls_are_steps(
     agent.reset("x")
     agent.act(seen)
     assert len(remote.heard) == 2  # another context
+
+
+@pytest.mark.parametrize("card", [CARD_1_0, CARD_0_3], ids=["1.0", "0.3"])
+def test_words_as_sound_are_parts_of_their_own_each_once(serve: Serve, observation: Seen, card: Json) -> None:
+    where = "agent.json" if card is CARD_0_3 else "agent-card.json"
+    remote = serve(answering(["Pardon?"], ["Pardon?"], [calls(DONE)]), card, where)
+    seen = replace(observation("[spoken]"), sounds=(b"RIFF wish",))
+    agent = play(remote, seen)
+    agent.act(seen)
+    again = replace(seen, said=("[spoken]",), sounds=(b"RIFF wish", b"RIFF again"))
+    agent.act(again)
+    agent.act(again)
+    heard = [re.findall(r"UklGR[\w+/=]*", json.dumps(message)) for message in remote.messages]
+    sounds = [[base64.b64decode(each) for each in found] for found in heard]
+    assert sounds[:2] == [[b"RIFF wish"], [b"RIFF again"]]
+    assert not any(sounds[2:])
+    assert all("audio/wav" in json.dumps(message) for message in remote.messages[:2])
 
 
 def test_episodes_side_by_side_have_contexts_of_their_own(serve: Serve, observation: Seen) -> None:

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
 from automotive_cosim.cockpit.apps.trip import TripMeter
-from automotive_cosim.cockpit.belongings import Belongings
+from automotive_cosim.cockpit.belongings import EVENTS, Belongings, Diary
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import CABIN, HMI, LINK
@@ -65,6 +65,19 @@ def test_what_is_brought_is_there_and_the_rest_is_what_is_drawn():
     assert parked().commands()["apps.memos"] == ["Trip A: tax"]
     assert "calendar" in parked().commands()["apps.installed"]
     assert "calendar" not in parked(Belongings()).commands()["apps.installed"]
+
+
+def test_a_diary_has_what_was_said_among_drawn_events_the_newest_first():
+    around = tuple(f"Mila: {number}" for number in range(EVENTS))
+    diary = Diary("2026-11-19", "The car: first", ((1, "Rosa: later"), (20, "Rosa: sooner")), around)
+    memos, others = (diary.memos(np.random.default_rng(seed)) for seed in (1, 2))
+    assert len(memos) == len(set(memos)) == EVENTS
+    assert memos != others
+    assert memos[-1] == others[-1] == "Thu 22 Oct: The car: first"
+    for each in (memos, others):
+        assert each.index("Wed 18 Nov: Rosa: later") < each.index("Fri 30 Oct: Rosa: sooner")
+    with pytest.raises(UserError, match="lacks 1"):
+        replace(diary, around=around[4:]).memos(np.random.default_rng(1))
 
 
 def test_a_detail_of_a_place_that_is_not_there_is_refused():

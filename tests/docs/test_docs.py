@@ -374,9 +374,7 @@ def test_pages_count_the_tasks_as_they_are():
     voice = Counter(task.id.split("_")[1] for task in CATALOGUE.of(Suite.VOICE))
     assert f"has {voice.total()} pairs in which noise in the cabin, or who spoke, decides" in reference
     assert [kind for kind, count in voice.items() if f"`voice_{kind}_*` ({count})" not in reference] == []
-    assert (
-        f"The suite `people` has {len(CATALOGUE.of(Suite.PEOPLE))} pairs in which those aboard react" in reference
-    )
+    assert f"The suite `people` has {len(CATALOGUE.of(Suite.PEOPLE))} pairs." in reference
     hurried = Counter(task.hurries for task in CATALOGUE.values())
     road, call, words = (hurried[kind] for kind in Hurry)
     live = f"eight seconds ({road} pairs), somebody rings ({call}), or the driver says more on the way ({words})."

@@ -216,6 +216,19 @@ def test_a_turn_has_a_picture_and_nothing_of_the_verdict(service: EpisodeService
     }  # fmt: skip
 
 
+def test_words_as_sound_are_parts_of_their_own(service: EpisodeService, monkeypatch) -> None:
+    monkeypatch.setattr("automotive_cosim.episode.specification.is_installed", lambda: True)
+    monkeypatch.setattr("automotive_cosim.episode.session.sounding", lambda text, snr_db: b"RIFF")
+
+    async def talk(client: Client) -> Any:
+        return await client.call_tool("start", START | {"hear": "audio"})
+
+    text, _, sound = inside(service, talk).content
+    assert (base64.b64decode(sound.data), sound.mime_type) == (b"RIFF", "audio/wav")
+    assert json.loads(text.text)["goal"] == "[spoken]"
+    assert "UklGRg" not in text.text
+
+
 def test_the_list_says_no_more_of_a_task_than_its_name_and_halves(service: EpisodeService) -> None:
     async def talk(client: Client) -> Json:
         return {suite: await call(client, "list_tasks", {"suite": suite}) for suite in Suite}

@@ -362,12 +362,24 @@ def test_by_ear_speaking_takes_its_time_and_who_is_not_understood_is_asked_again
     episode.step(answer)
     assert episode.seconds - begun_s == pytest.approx(1 + spoken_s(answer.text))
     assert episode.said == (answer.text,)
-    monkeypatch.setattr("automotive_cosim.episode.session.is_understood", lambda moment: False)
+    monkeypatch.setattr("automotive_cosim.episode.session.is_understood", lambda moment, noise_db: False)
     episode.step(answer)
     episode.step(ASK)
     assert [step.said for step in episode.steps[-2:]] == [(PARDON,), (PARDON,)]
     assert episode.said == (answer.text,)
     assert not episode.questions
+
+
+def test_by_ear_who_else_speaks_hides_the_drivers_words_until_it_is_over(talk, loud):
+    episode = talk(Says("From the rear left seat: " + "Are we there yet? " * 5, step=1), setup=BY_EAR)
+    episode.step(WAIT)
+    quiet_db = level_db(episode.world.moment)
+    assert episode.steps[-1].cabin_db == pytest.approx(quiet_db)
+    episode.step(WAIT)
+    assert episode.steps[-1].cabin_db == pytest.approx(level_db(episode.world.moment, 1))
+    for _ in range(8):
+        episode.step(WAIT)
+    assert episode.steps[-1].cabin_db == pytest.approx(level_db(episode.world.moment))
 
 
 def test_by_sound_the_agent_gets_every_word_as_sound_and_no_text(talk, monkeypatch):

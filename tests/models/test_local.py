@@ -51,7 +51,7 @@ def file(tmp_path, monkeypatch):
     module = SimpleNamespace(CommonParams=params, Server=Runtime, __spec__=SimpleNamespace())
     monkeypatch.setitem(sys.modules, "xllamacpp", module)
     local._loaded.cache_clear()
-    (tmp_path / "small.gguf").write_bytes(b"GGUF")
+    (tmp_path / "small.gguf").write_bytes(ABOUT)
     yield tmp_path / "small.gguf"
     local._loaded.cache_clear()
 
@@ -163,9 +163,13 @@ ABOUT = gguf(
     ("general.architecture", "llama"), ("tokenizer.ggml.tokens", ["a", "b"]), ("llama.context_length", 4096),
     ("tokenizer.ggml.scores", [1, 2, 3]), ("tokenizer.chat_template", "{% if tools %}"), ("general.name", "Small"),
 )  # fmt: skip
+TENSOR = b"GGUF" + struct.pack("<IQQQ", 3, 1, 0, 1) + b"t" + struct.pack("<IQIQ", 1, 8, 0, 0)
+TENSOR += bytes(-len(TENSOR) % 32 + 8 * 4)
 
 
 def test_a_file_says_what_fits(tmp_path):
+    (tmp_path / "t.gguf").write_bytes(TENSOR)
+    assert read_model_file(tmp_path / "t.gguf").name == "t"
     (tmp_path / "m.gguf").write_bytes(ABOUT)
     assert read_model_file(tmp_path / "m.gguf") == ModelFile("Small", 4096, has_template=True, has_tools=True)
     (tmp_path / "base.gguf").write_bytes(gguf(("general.architecture", "llama")))
@@ -174,6 +178,7 @@ def test_a_file_says_what_fits(tmp_path):
 
 @pytest.mark.parametrize("content", [
     b"", b"GGU", b"GGUF", b"hello", ABOUT[:40], ABOUT[:-3], b"GGUF" + struct.pack("<IQQ", 9, 0, 1),
+    TENSOR[:-1], TENSOR[:50],
     b"GGUF" + struct.pack("<IQQ", 3, 0, 2**63), b"GGUF" + struct.pack("<IQQQ", 3, 0, 1, 2**62),
 ])  # fmt: skip
 def test_a_file_that_is_no_model_is_told_in_a_line(content, tmp_path):

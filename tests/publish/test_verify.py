@@ -398,6 +398,9 @@ def test_the_commands_tell_by_their_exit_code(packed, tmp_path):
     assert fine.exit_code == 0, fine.output
     assert "1 drive replayed" in fine.output
     assert "this check cannot tell" in fine.output
+    (tmp_path / "key").write_text("k" * 16)
+    of_none = CliRunner().invoke(app, ["publish", "verify", str(packed), "--key", str(tmp_path / "key")])
+    assert "drawn from no key" in str(of_none.exception)
     data = bytearray(packed.read_bytes())
     data[data.index(b"wall_seconds") + 16] ^= 1
     (tmp_path / "b.bundle").write_bytes(data)

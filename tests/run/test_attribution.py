@@ -142,3 +142,15 @@ def test_where_an_act_makes_no_difference_any_more_the_trial_itself_goes_on(fork
     assert max(map(len, slow)) == 1, "the road is another from there on"
     assert max(map(len, says)) > 1, "what comes is taken from the trial"
     assert told([moment for part in says for moment in part]) == told(forks.moments[forks.acts[1].fork.at :])
+
+
+@pytest.mark.parametrize("folder", ["slow"], indirect=True)
+def test_what_is_driven_with_acts_is_followed_as_long_as_without_them_whatever_was_driven_before(
+    forks: Forks, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Forks, "is_drive", True)
+    monkeypatch.setattr("automotive_cosim.run.forks.FOLLOWED_S", 3.0)
+    slow, says = forks.acts
+    ends = [{moments[-1].time_s for moments in forks.both(left, 1)} for left in ([slow], [slow, says])]
+    assert [len(each) for each in ends] == [1, 1]
+    assert max(ends[0]) < max(ends[1])

@@ -160,6 +160,8 @@ def test_a_search_is_told_from_an_evaluation_and_its_page_runs_nothing(serving: 
 
 def test_an_evaluation_and_its_episodes(serving: Serving, tmp_path: Path) -> None:
     browser = serving(write_evaluation(tmp_path / "mine"))
+    rows = tmp_path / "mine/episodes.jsonl"
+    rows.write_text(2 * rows.read_text("utf-8") + '{"id": "cut", ', "utf-8")  # run again, and killed
     (record,) = browser("/api/runs").json["records"]
     assert (record["kind"], record["done"], record["planned"]) == ("evaluation", 2, 2)
     results = browser(f"/api/evaluations/{record['id']}").json

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, SlowDown
+from automotive_cosim.contracts import DrivingState, Observation, Reroute, RouteOption, SlowDown
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.run.executor import tried
 from automotive_cosim.run.row import as_json
@@ -200,16 +200,30 @@ def test_a_day_of_choices_is_the_same_traffic_and_asks_each_driver_as_he_sets_ou
             chosen.day(warm, {car: Reroute(edges=("nowhere",))}, 180.0)
 
 
+class _Stumbling:
+    """An agent of one's own that raises whenever it is asked."""
+
+    channels = ("vehicle",)
+
+    def reset(self, goal: str) -> None: ...
+
+    def act(self, observation: Observation) -> object:
+        raise ValueError("a fault of one answer")
+
+
 @pytest.mark.slow
-def test_cockpits_in_a_scenario_without_weather_have_the_climates(
+def test_cockpits_in_a_scenario_without_weather_have_the_climates_and_a_fault_costs_a_step(
     sumo: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     scene = replace(PLAN.scene(), weather=())
     monkeypatch.setattr(AdoptionPlan, "scene", lambda self: scene)
-    plan = replace(PLAN, agent="silent", seeds=(1,), minutes=1.0, shares=(100.0,))
+    plan = replace(PLAN, agent="tests.studies.test_adoption:_Stumbling", seeds=(1,), minutes=1.0, shares=(100.0,))
     row = tried(run_seed)(plan.jobs()[0], tmp_path)
     assert row.error is None
     assert not any(car.error for car in row.shares[-1].cars)
+    assert sum(car.refused for car in row.shares[-1].cars) > len(row.shares[-1].cars)
+    assert any("were no action" in line for line in warnings(AdoptionStudy(tmp_path, {}, plan, (row,))))
+    assert "a fault of one answer" in str(read_fleet(tmp_path, fleet_id(1, 1.0)))
 
 
 class Odd:

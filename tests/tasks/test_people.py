@@ -1,7 +1,8 @@
-"""Laws over the suite in which those aboard react: who speaks is there, and notices what he speaks about."""
+"""Laws over the suite in which those aboard react, or have told the car what holds."""
 
 import re
 
+from automotive_cosim.cockpit.belongings import DAYS
 from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA
 from automotive_cosim.tasking.instance import draw
@@ -10,7 +11,8 @@ from automotive_cosim.tasking.task import Hurry
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 
-PEOPLE = CATALOGUE.of(Suite.PEOPLE)
+PEOPLE = [task for task in CATALOGUE.of(Suite.PEOPLE) if task.first.start.belongings.diary is None]
+REMEMBERED = [task for task in CATALOGUE.of(Suite.PEOPLE) if task.first.start.belongings.diary is not None]
 ALL = frozenset(Seat)
 FRONT = frozenset({Seat.DRIVER, Seat.PASSENGER})
 NOTICED = {
@@ -56,3 +58,18 @@ def test_every_kind_of_reaction_is_there():
     said = "\n".join(says.text for task in PEOPLE for says in draw(task, "first", 0).half.says)
     for kind in (["Did you hear me?", "Hello?"], ["Thank you.", "Great."], ["Not mine"], ["No quarrel"]):
         assert any(each in said for each in kind), kind
+
+
+def test_there_are_twenty_pairs_over_weeks():
+    assert len(REMEMBERED) >= 20
+
+
+@over(REMEMBERED)
+def test_halves_differ_in_one_note_of_four_weeks_that_speaks_of_the_days_before(task):
+    starts = [draw(task, name, 0).half.start for name in task.halves]
+    diaries = [start.belongings.diary for start in starts]
+    assert {diary.today for diary in diaries} == {start.start[:10] for start in starts}
+    first, second = (set(diary.said) for diary in diaries)
+    assert len(first - second) == len(second - first) == 1
+    assert first & second, "a note that stands in both halves leads elsewhere"
+    assert all(0 < ago < DAYS for ago, _ in first | second)

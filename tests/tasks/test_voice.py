@@ -12,7 +12,7 @@ from tests.laws import over
 VOICE = CATALOGUE.of(Suite.VOICE)
 BY_KIND = {
     kind: [task for task in VOICE if task.id.startswith(f"voice_{kind}_")]
-    for kind in ("ask", "heed", "quiet", "over", "brief", "merge")
+    for kind in ("ask", "heed", "quiet", "over", "brief", "merge", "siren")
 }
 
 
@@ -80,9 +80,10 @@ def test_at_the_wheel_there_is_time_for_a_few_words(task):
         assert not untold(long, [*moving.tells, *standing.tells])
 
 
-@over(BY_KIND["merge"])
-def test_on_a_slip_road_the_question_waits(task):
-    assert any(getattr(check, "name", "") == "asked_on" for check in task.first.goal.checks)
+@over(BY_KIND["merge"] + BY_KIND["siren"])
+def test_on_a_slip_road_and_near_a_siren_the_question_waits(task):
+    waits = "asked_on" if task in BY_KIND["merge"] else "asked_without_siren"
+    assert any(getattr(check, "name", "") == waits for check in task.first.goal.checks)
     assert asks(task.first.moves)
     assert asks(task.second.moves)
     assert asks(task.first.slips[0][:1])

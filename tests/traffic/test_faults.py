@@ -394,14 +394,16 @@ def test_later_commands_fork_from_what_a_keeper_has_warmed_and_drive_alike(
 
 
 def test_what_a_keeper_was_told_of_files_is_not_read_again(own_home: Path, tmp_path: Path) -> None:
-    file, read = tmp_path / "net.xml", list[str]()
+    file, read, later = tmp_path / "net.xml", list[str](), list[str]()
 
-    def once() -> str:
+    def once(kind: str = "text") -> str:
         def text() -> str:
-            read.append(file.read_text(encoding="utf-8"))
-            return read[-1]
+            if later:
+                file.write_text(later.pop(), encoding="utf-8")
+            read.append(kind + file.read_text(encoding="utf-8"))
+            return read[-1].removeprefix("text")
 
-        return keeper.read_once([file], text)
+        return keeper.read_once(kind, [file], text)
 
     for is_kept in (False, True):
         if is_kept:
@@ -410,7 +412,14 @@ def test_what_a_keeper_was_told_of_files_is_not_read_again(own_home: Path, tmp_p
         for content in ("one", "other", "one"):
             file.write_text(content, encoding="utf-8")
             assert [once(), once()] == [content, content]
-        assert read == (["one", "other"] if is_kept else ["one", "one", "other", "other", "one", "one"])
+        seen = ["one", "other"] if is_kept else ["one", "one", "other", "other", "one", "one"]
+        assert read == [f"text{each}" for each in seen]
+        assert once("other kind ") == "other kind one"
+    file.write_text("one, again", encoding="utf-8")
+    later.append("changed meanwhile")
+    assert once() == "changed meanwhile"
+    file.write_text("one, again", encoding="utf-8")
+    assert once() == "one, again"
 
 
 @pytest.mark.parametrize("kind", ["open", "link", "file"])
@@ -457,3 +466,46 @@ def test_a_keeper_is_needed_for_its_minutes_after_the_last_use(monkeypatch: pyte
     for later_s, needed in ((290, True), (310, False)):
         monkeypatch.setattr(keeper.time, "monotonic", lambda later_s=later_s: now_s + later_s)
         assert one._is_needed() is needed
+
+
+def test_nobody_s_copy_fails_because_the_keeper_needs_room_and_what_cannot_be_warmed_up_is_not_kept(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    one, made = keeper._Keeper(5), list[str]()
+    one._most_bytes = 0.0
+
+    def copy(name: str) -> None:
+        ours, theirs = socket.socketpair()
+        with ours, theirs:
+            one._copy(name, MessageChannel(ours))  # type: ignore[arg-type]
+
+    class _Warm:
+        pid, memory_bytes, is_broken = 0, 1, False
+
+        def __init__(self, name: str) -> None:
+            self.name = name
+
+        def fork(self, outputs: None) -> _Warm:
+            if self.name == "one":
+                copy("other")  # which needs the room
+            assert not self.is_broken
+            made.append(self.name)
+            return self
+
+        def hand_over(self, channel: MessageChannel) -> None: ...
+
+        def close(self) -> None:
+            self.is_broken = True
+
+    def start(name: str, *_: object) -> tuple[_Warm, None]:
+        if name == "broken":
+            raise TrafficError(name)
+        return _Warm(name), None
+
+    monkeypatch.setattr(keeper.RemoteProcess, "start", start)
+    monkeypatch.setattr(keeper, "_wanted", lambda setup: setup)
+    copy("one")
+    assert made == ["other", "one"]
+    with pytest.raises(TrafficError):
+        copy("broken")
+    assert len(one._kept) == 1

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from automotive_cosim.cockpit.signals import CABIN, CALL, HVAC, MEDIA, VOICE
-from automotive_cosim.voice.cabin import OPENINGS, driver_snr_db, is_understood, level_db, sources
+from automotive_cosim.voice.cabin import OPENINGS, driver_snr_db, is_understood, level_db, sources, voices
 from tests.drives.scenes import moment, vehicle
 from tests.laws import over
 
@@ -60,8 +60,24 @@ def test_levels_add_up_by_their_energy_and_what_is_silent_is_not_listed():
     assert "media" not in dict(sources(moment(signals=muted)))
 
 
+def test_others_are_noise_while_they_speak_and_the_radio_is_media():
+    said = [(10.0, ["Left.", "From the rear left seat: Are we there yet? I am so very hungry."])]
+    said.append((12.0, ["From the passenger seat: Not yet.", "From the loudspeakers: The news at noon."]))
+    assert [voices(said, at_s) for at_s in (9.9, 10.0, 12.0, 13.0, 16.0)] == [0, 1, 2, 1, 0]
+    here = moment(kmh=0.0, signals=QUIET)
+    assert level_db(here, 1) == pytest.approx(60.0, abs=0.5)
+    assert level_db(here, 2) - level_db(here, 1) == pytest.approx(3.0, abs=0.2)
+    assert understood(0.0, QUIET)
+    assert not understood(0.0, QUIET | {VOICE.GUIDANCE_VOLUME.path: 25.0}, 2)
+
+
+def understood(kmh, signals, others=0):
+    here = moment(kmh=kmh, signals=signals)
+    return is_understood(here, level_db(here, others))
+
+
 def test_the_driver_understands_the_car_unless_it_is_loud_or_its_voice_is_off():
-    assert is_understood(moment(kmh=130.0, signals=QUIET))
-    assert not is_understood(moment(kmh=130.0, signals=OPEN))
-    assert is_understood(moment(kmh=130.0, signals=OPEN | {VOICE.GUIDANCE_VOLUME.path: 100.0}))
-    assert not is_understood(moment(kmh=0.0, signals=QUIET | {VOICE.GUIDANCE_VOLUME.path: 0.0}))
+    assert understood(130.0, QUIET)
+    assert not understood(130.0, OPEN)
+    assert understood(130.0, OPEN | {VOICE.GUIDANCE_VOLUME.path: 100.0})
+    assert not understood(0.0, QUIET | {VOICE.GUIDANCE_VOLUME.path: 0.0})

@@ -165,6 +165,8 @@ class EquippedCar:
     driven_m: float
     reroutes: int
     warnings: int
+    refused: int = 0
+    """Answers of its agent that were no action; each cost a step."""
     error: str = ""
     """Why it lost its assistant; empty if it did not."""
 
@@ -206,6 +208,8 @@ class ShareLog:
     """How many routes of each car were changed on an assistant's advice."""
     warned: list[tuple[str, str, float, str]] = field(default_factory=list)
     """Kind of the alert, edge, time and car."""
+    refused: Counter[str] = field(default_factory=Counter)
+    """How many answers of each car's agent were no action."""
     errors: dict[str, str] = field(default_factory=dict)
     """By car, why it lost its assistant."""
 
@@ -225,7 +229,7 @@ def run_seed(job: AdoptionJob, folder: Path) -> AdoptionRow:
     driven = {}
     with closing(warmed_up(job)) as warm:
         for number, share in enumerate(shares):
-            doing(f"driving with {share:.0%} equipped", share=number / len(shares))
+            doing(f"driving with {100 * share:g}% equipped", share=number / len(shares))
             driven[share] = drive(job, warm, share, keeps=folder)
     before = driven[0.0][1]
     return replace(
@@ -454,6 +458,8 @@ class _Drive:
             try:
                 action = within(HANGS_S, lambda: agent.act(session.observation))
             except ActionError as error:
+                self._said.refused[car.car] += 1
+                self._note(car.car, f"an answer that is no action: {error}")
                 yield from session.refusing(str(error))
                 continue
             except (AgentError, OutOfBudgetError, UserError) as error:
@@ -531,6 +537,7 @@ def _car(
         driven_m=round(trip.driven_m),
         reroutes=said.rerouted[car],
         warnings=warnings,
+        refused=said.refused[car],
         error=said.errors.get(car, ""),
     )
 
