@@ -372,10 +372,14 @@ def _leader_stops(setting: Setting) -> Causes:
 
 
 def _sign(
-    plate: str = "", *, by_lane: bool = False, weather: Callable[[Weather], Weather] | None = None
+    plate: str = "",
+    *,
+    by_lane: bool = False,
+    weather: Callable[[Weather], Weather] | None = None,
+    mood: str | None = "hurried",
 ) -> Staging:
     """A driver in a hurry comes to a sign of a lower limit, with a plate or a variable one; as a look-alike, it is
-    on the other carriageway. What it holds in falls as long as it stands."""
+    on the other carriageway. What it holds in falls as long as it stands. Without a mood, nobody hurries."""
 
     def stage(setting: Setting) -> Causes:
         until_s = setting.at_s + AHEAD_S
@@ -388,7 +392,7 @@ def _sign(
             shows="by lane" if by_lane else "over all lanes",
             other_way=setting.is_lookalike,
         )
-        moods = DriverAt(setting.at_s, "hurried"), DriverAt(until_s, setting.driver)
+        moods = () if mood is None else (DriverAt(setting.at_s, mood), DriverAt(until_s, setting.driver))
         falls = () if weather is None else (WeatherSpan(setting.at_s, until_s, weather(setting.weather)),)
         return Causes(moods=moods, incidents=(sign,), weather=falls)
 
@@ -431,8 +435,13 @@ ON_REQUEST: Mapping[str, Staging] = {
     "hours_sign": _sign("06:00-22:00"),
     "variable_sign": _sign(),
     "lane_sign": _sign(by_lane=True),
+    "lorry_sign": _sign("hgv", mood=None),
+    "arrow_sign": _sign("arrow", mood=None),
+    "lane_arrow_sign": _sign("lane arrow", by_lane=True, mood=None),
 }
 """What the settings of a drive can stage; families draw from ``STAGINGS`` alone."""
+NOT_BINDING = ("lorry_sign", "arrow_sign", "lane_arrow_sign")
+"""Signs for others, which a careful agent leaves alone: nothing comes due of them."""
 BRINGS: Mapping[str, tuple[str, ...]] = {
     "cut_in": ("leader_close", "leader_brakes"),
     "cut_out": ("breakdown", "leader_brakes"),
@@ -441,6 +450,7 @@ BRINGS: Mapping[str, tuple[str, ...]] = {
         ("left_sign", "wet_sign", "snow_sign", "hours_sign", "variable_sign", "lane_sign"),
         ("limit_falls", "over_limit"),
     ),
+    **dict.fromkeys(NOT_BINDING, ("over_limit",)),
 }
 """The kinds of events that those stagings bring about which have no kind's name."""
 SCHOOL_ZONE = "school_zone"

@@ -36,7 +36,7 @@ LACKING = frozenset({"goal", "in_time", "declared"})
 REDRAWS, LEAST_REDRAWS = 4, 2
 """Further draws of both, with and without, where leaving an act out changed anything on the road; as many as the
 fewer where it is no more than chance."""
-DRIVEN, LEAST_REDRAWN = 12.0, 4.0
+DRIVEN, LEAST_REDRAWN = 11.0, 4.0
 """How much is driven in all, as a multiple of the trial, so that twelve acts cost three times it; and what
 redraws and pairs may take even of many acts."""
 PAIRED = 3.0
@@ -171,9 +171,10 @@ def _redrawn(forks: Forks, several: Sequence[Sequence[ForkedAct]], left_s: float
     draws = {number: 0 for number, left in enumerate(several) if _moves(forks, left, 0)}
     for draw in range(1, REDRAWS + 1):
         for number, drawn in draws.items():
-            if drawn == draw - 1 and left_s > 0 and _moves(forks, several[number], drawn):
+            takes_s = 2 * forks.length_s(several[number])
+            if drawn == draw - 1 and takes_s <= left_s and _moves(forks, several[number], drawn):
                 draws[number] = draw
-                left_s -= 2 * forks.length_s(several[number])
+                left_s -= takes_s
         forks.drive([several[number] for number, drawn in draws.items() if drawn == draw], draw)
     steps = [[act.step for act in left] for left in several]
     return [without(forks, some, draws.get(number, 0)) for number, some in enumerate(steps)], left_s

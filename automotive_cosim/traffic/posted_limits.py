@@ -7,10 +7,10 @@ The words are OpenStreetMap's (wiki pages "Key:maxspeed" and "Conditional restri
     access:conditional    no @ (Mo-Fr 07:30-08:30)
 
 Conditions on weekdays, times of day, dates, months and weeks are understood (of rules that a semicolon parts, the
-last with a day decides about it, as in OpenStreetMap's opening hours), and ``wet`` and ``snow``, which the
-weather of the drive decides. Public and school holidays (``PH``, ``SH``) are left out of them: there is no calendar
-of holidays, so every Monday is a school day; an import lists them (``names_holidays``). What holds under any other
-condition (axle load, daylight, ...) is omitted and reported.
+last with a day decides about it, as in OpenStreetMap's opening hours), ``wet`` and ``snow``, which the weather of
+the drive decides, and what never holds for the car (``OF_OTHERS``). Public and school holidays (``PH``, ``SH``) are
+left out of them: there is no calendar of holidays, so every Monday is a school day; an import lists them
+(``names_holidays``). What holds under any other condition (axle load, daylight, ...) is omitted and reported.
 """
 
 from __future__ import annotations
@@ -35,6 +35,13 @@ WALK_KMH = 7.0
 
 WEATHERS = {"wet": "when wet", "snow": "in snow"}
 """Conditions that the weather decides, and how they are said."""
+OF_OTHERS = {
+    "hgv": "for lorries",
+    "arrow": "for the exit that its arrow points to",
+    "lane arrow": "for the other lane, to which its arrow points",
+}
+"""Plates that never bind the car where it is, and how they are said; OpenStreetMap has no word for an arrow."""
+_SAID = WEATHERS | OF_OTHERS
 
 _CLAUSE = re.compile(r"([^@;]+)@\s*(\([^()]*\)|[^;()]+)\s*(?:;|$)")
 _SIGN = re.compile(r"(\d+(?:\.\d+)?)\s*(km/h|kmh|kph|mph)?", re.IGNORECASE)
@@ -80,7 +87,7 @@ class Hours:
     dates: tuple[Day, Day] = ((1, 1), (12, 31))
     """The first and the last day of the year on which it holds; the last may be in the next year."""
     weather: str = ""
-    """A key of ``WEATHERS`` if it holds in that weather only."""
+    """A key of ``WEATHERS`` if it holds in that weather only; of ``OF_OTHERS`` if never for the car."""
     weeks: frozenset[int] = frozenset()
     """Which of these weekdays of a month, if not all: 1 is the first, -1 the last."""
     iso_weeks: frozenset[int] = frozenset()
@@ -260,10 +267,10 @@ def _read_sign(sign: str) -> tuple[float | None, str]:
 
 
 def _weather(condition: str) -> tuple[str, str]:
-    """A condition without the weather in it (``22:00-06:00 AND wet``), and that."""
+    """A condition without the weather, or whom it is for, in it (``22:00-06:00 AND wet``), and that."""
     parts = [part.strip() for part in condition.split(" AND ")]
-    found = [part for part in parts if part in WEATHERS]
-    rest = [part for part in parts if part not in WEATHERS]
+    found = [part for part in parts if part in _SAID]
+    rest = [part for part in parts if part not in _SAID]
     if len(found) > 1 or len(rest) > 1:
         raise ValueError(condition)
     return "".join(rest), "".join(found)
@@ -292,7 +299,7 @@ def _hours(rule: str, off: Sequence[str], weather: str) -> Hours:
     but = f"but {', '.join(off)}" if off else ""
     said = days.replace(",", ", ") + (nth[0] if nth else "")
     of_year = f"week {match['weeks']}" if match["weeks"] else ""
-    words = " ".join(part for part in (of_year, dates, said, times_said, but, WEATHERS.get(weather, "")) if part)
+    words = " ".join(part for part in (of_year, dates, said, times_said, but, _SAID.get(weather, "")) if part)
     weeks = frozenset(map(int, nth[1].split(","))) if nth else frozenset[int]()
     return Hours(_weekdays(days), spans, words, _dates(dates), weather, weeks, _iso_weeks(match["weeks"] or ""))
 

@@ -514,7 +514,7 @@ def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
         ),
         (
             "[factors]\ndrive = ['grid_june']\n[failure]\nevents = ['nothing']",
-            r"named 'nothing'.*: belt, .*wipers\.",
+            r"named 'nothing'.*: arrow_sign, .*wipers\.",
         ),
         ("[factors]\ntask = ['hvac_fan_max']\nlanguage = ['xx']", "language has a value that does not exist"),
     ],

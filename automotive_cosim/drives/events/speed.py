@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 from automotive_cosim.cockpit.sensor_range import HORIZON_M
 from automotive_cosim.cockpit.signals import ADAS
-from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, Cruise, LimitSource, PullOver, SightKind, SlowDown
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    MPH_PER_MPS,
+    AlertKind,
+    Cruise,
+    LimitSource,
+    PullOver,
+    SightKind,
+    SlowDown,
+)
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import DriveAct, EventKind, Measured, Sighting
 from automotive_cosim.drives.events.law import (
@@ -20,6 +30,7 @@ from automotive_cosim.drives.events.law import (
 from automotive_cosim.drives.margins import hold_s, margin_kmh
 from automotive_cosim.geo.binding import SIGN
 from automotive_cosim.geo.weather import phenomena
+from automotive_cosim.traffic.posted_limits import OF_OTHERS
 
 FOG_M = 1000.0
 """Sight below which there is fog (WMO No. 8)."""
@@ -63,7 +74,10 @@ class OverLimit(SpeedKind):
     told_by = ("speed", "limit")
     name = "over_limit"
     about = "the car is faster than the sign or the law of the road allows"
-    lookalike = "a little above the limit, within the error limit of speed meters: 52 in a 50"
+    lookalike = (
+        "a little above the limit, within the error limit of speed meters: 52 in a 50; or above one that a plate "
+        "keeps for others"
+    )
     source = "Regulation (EU) 2021/1958, annex I: the tone after 3 to 6 s by ratio; deadline: the tone's 5 s twice"
     neutral = "below 20 km/h, by a rule that is not verified, or where no limit is known"
     grace_s = 10.0
@@ -73,6 +87,7 @@ class OverLimit(SpeedKind):
         """Sights a speed from 1 km/h above the limit."""
         now = drive[-1]
         limit, kmh = limit_here(now), speed_kmh(now)
+        yield from _of_others(now)
         if limit is None or kmh < SLOW_KMH or is_school_time(now) or is_reduced(now.context, limit):
             return
         why = f" {limit.text}" if limit.limit.source in (LimitSource.LAW, LimitSource.VARIABLE) else ""
@@ -89,6 +104,18 @@ class OverLimit(SpeedKind):
             is_lifted = now.driving.road.limit.is_posted
             return f"{kmh:.0f} km/h where no limit applies" if is_lifted else None
         return None if kmh > limit.kmh + margin_kmh(limit.kmh) else _kept(kmh, limit.kmh)
+
+
+_PLATE = re.compile(rf"([\d.]+) (km/h|mph) ({'|'.join(OF_OTHERS.values())})")
+
+
+def _of_others(now: Moment) -> Iterator[Sighting]:
+    """The look-alikes of lower limits whose plates are not for the car."""
+    kmh = speed_kmh(now)
+    for figure, unit, whom in _PLATE.findall(now.driving.road.limit_hours):
+        value = float(figure) * KMH_PER_MPS / (MPH_PER_MPS if unit == "mph" else KMH_PER_MPS)
+        if kmh > value + margin_kmh(value):
+            yield Sighting(f"{kmh:.0f} km/h where {figure} {unit} apply {whom}", whom, lookalike=True, value=value)
 
 
 SAME_KMH, HAZE_M = 5.0, 2000.0
