@@ -37,6 +37,8 @@ WIDE = str.maketrans("\uff5b\uff5d\uff1a", "{}:")
 """Braces and the colon of full width as ASCII."""
 WIDE_COMMA = re.compile(r"""(?<=["'\u201d\u2019\del}\]])\s*\uff0c\s*(?=["'\u201c\u2018])""")
 """A comma of full width between a value and the name that follows it; others stay as they are."""
+CLOCK = re.compile(r"""(["']\s*:\s*)(\d{1,2}:\d\d)(?=\s*[,}])""")
+"""A time of day without quotes after its name; ``json_repair`` would keep the hour alone."""
 FORM = {"situation", "plan", "action"}
 """Keys of an answer that is one object."""
 LABELS = re.compile(
@@ -168,7 +170,7 @@ def _repaired(text: str) -> list[Json]:
     start = narrow.find("{")
     if start < 0:
         return []
-    plain = WIDE_COMMA.sub(",", narrow[start : start + LONGEST_REPAIRED])
+    plain = CLOCK.sub(r'\1"\2"', WIDE_COMMA.sub(",", narrow[start : start + LONGEST_REPAIRED]))
     try:
         value: object = repair_json(plain, return_objects=True, skip_json_loads=True)
     except (ValueError, RecursionError):

@@ -141,6 +141,13 @@ def test_single_quotes_around_an_apostrophe():
     assert answer.action.text == "it's on"
 
 
+def test_a_time_of_day_without_quotes_keeps_its_minutes():
+    assert read('Action: {"action_type": "answer", "text": 17:45}').action.text == "17:45"
+    assert read("{'action_type': 'answer', 'text': 'at noon: 12:30, or so'}").action.text == "at noon: 12:30, or so"
+    with pytest.raises(ActionError, match="12:30"):
+        read('Action: {"action_type": "click", "index": 12:30}')
+
+
 @pytest.mark.parametrize(
     "text",
     [
