@@ -24,7 +24,7 @@ from automotive_cosim.agents import Agent, AgentSettings, is_remote, make_agent,
 from automotive_cosim.agents.guest import FAULTS, aside, own_class, told
 from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import ActionType, DrivingState, Json, Reroute, RouteOption, SlowDown
+from automotive_cosim.contracts import ActionType, DrivingState, FeedbackCode, Json, Reroute, RouteOption, SlowDown
 from automotive_cosim.cosim.simulation import couple
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.fleet import Fleet
@@ -479,11 +479,13 @@ class _Drive:
             except (AgentError, OutOfBudgetError, UserError) as error:
                 self._fails(car.car, error)
                 return
-            if action.action_type is ActionType.SHOW_ALERT:
-                self._said.warned.append((str(action.kind), car.state.road.edge_id, car.state.time_s, car.car))
+            alert = str(action.kind), car.state.road.edge_id, car.state.time_s, car.car
             if action.action_type is not ActionType.WAIT:
                 self._note(car.car, action_in_words(action, session.observation.elements or ()))
             yield from session.stepping(action)
+            is_shown = session.steps[-1].feedback.code is FeedbackCode.OK
+            if action.action_type is ActionType.SHOW_ALERT and is_shown:
+                self._said.warned.append(alert)
             now = car.state.ahead.route_edges
             self._said.rerouted[car.car] += bool(now) and now != before[len(before) - len(now) :]
             before = now or before
