@@ -37,8 +37,8 @@ WEATHERS = {"wet": "when wet", "snow": "in snow"}
 """Conditions that the weather decides, and how they are said."""
 OF_OTHERS = {
     "hgv": "for lorries",
-    "arrow": "for the exit that its arrow points to",
-    "lane arrow": "for the other lane, to which its arrow points",
+    "arrow": "for the exit that its arrow shows",
+    "lane arrow": "for the other lane, which its arrow shows",
 }
 """Plates that never bind the car where it is, and how they are said; OpenStreetMap has no word for an arrow."""
 _SAID = WEATHERS | OF_OTHERS
