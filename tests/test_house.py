@@ -53,7 +53,7 @@ CEILINGS = {
     "schemas": (84, 0, 0),
     "serve": (2742, 22, 0),
     "service": (396, 4, 0),
-    "studies": (14048, 125, 90),
+    "studies": (14050, 125, 90),
     "tasking": (5403, 60, 0),
     "tasks": (15, 0, 0),
     "tests": (65677, 125, 0),
@@ -65,7 +65,7 @@ CEILINGS = {
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
 
-DATA_LINES, WIDTH = 16_751, 130
+DATA_LINES, WIDTH = 16_764, 130
 """Lines of the tasks' files, with every phrasing, and characters of the longest."""
 
 
