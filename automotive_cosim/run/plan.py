@@ -112,7 +112,7 @@ class PlannedTrial:
             task.id,
             self.half,
             scenario,
-            max_steps=limits.hard_steps if task.suite.max_steps == Suite.HARD.max_steps else limits.steps,
+            max_steps=limits.hard_steps if task.suite.is_long else limits.steps,
             max_sim_s=limits.sim_s,
             held_out=self.held_out,
             spare_traffic=spare if scenario is None or scenario in task.runs_in else (),

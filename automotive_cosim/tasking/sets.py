@@ -27,7 +27,12 @@ class Suite(StrEnum):
     @property
     def max_steps(self) -> int:
         """Default limit of actions per episode."""
-        return 40 if self in (Suite.HARD, Suite.PEOPLE) else 20
+        return 40 if self.is_long else 20
+
+    @property
+    def is_long(self) -> bool:
+        """Whether its tasks take more actions than others: many steps, or much to read."""
+        return self in (Suite.HARD, Suite.PEOPLE)
 
 
 class Split(StrEnum):

@@ -227,13 +227,18 @@ class ShareLog:
         return count
 
 
+def percent(share: float) -> str:
+    """A share as it was asked for: ``2.5%``."""
+    return f"{100 * share:.6g}%"
+
+
 def run_seed(job: AdoptionJob, folder: Path) -> AdoptionRow:
     """Runs all shares of a seed; its row is kept, and where the equipped cars of each share drove."""
     shares = dict.fromkeys((0.0, *(percent / 100 for percent in job.plan.shares)))
     driven = {}
     with closing(warmed_up(job)) as warm:
         for number, share in enumerate(shares):
-            doing(f"driving with {100 * share:g}% equipped", share=number / len(shares))
+            doing(f"driving with {percent(share)} equipped", share=number / len(shares))
             driven[share] = drive(job, warm, share, keeps=folder)
     before = driven[0.0][1]
     return replace(
@@ -479,13 +484,13 @@ class _Drive:
             except (AgentError, OutOfBudgetError, UserError) as error:
                 self._fails(car.car, error)
                 return
-            alert = str(action.kind), car.state.road.edge_id, car.state.time_s, car.car
+            at = car.state.road.edge_id, car.state.time_s, car.car
             if action.action_type is not ActionType.WAIT:
                 self._note(car.car, action_in_words(action, session.observation.elements or ()))
             yield from session.stepping(action)
-            is_shown = session.steps[-1].feedback.code is FeedbackCode.OK
-            if action.action_type is ActionType.SHOW_ALERT and is_shown:
-                self._said.warned.append(alert)
+            is_done = session.steps[-1].feedback.code is FeedbackCode.OK
+            if action.action_type is ActionType.SHOW_ALERT and is_done:
+                self._said.warned.append((str(action.kind), *at))
             now = car.state.ahead.route_edges
             self._said.rerouted[car.car] += bool(now) and now != before[len(before) - len(now) :]
             before = now or before

@@ -9,7 +9,7 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
-from automotive_cosim.studies.adoption.adoption import AdoptionStudy, Cohort, EquippedCar, ShareOutcome
+from automotive_cosim.studies.adoption.adoption import AdoptionStudy, Cohort, EquippedCar, ShareOutcome, percent
 from automotive_cosim.studies.adoption.fleets import DrivenFleet, fleet_id, read_fleet
 from automotive_cosim.studies.content import ShownStudy
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
@@ -70,7 +70,7 @@ def fleets(study: AdoptionStudy) -> tuple[str, dict[str, str]]:
             "dot": round(max(right - left, top - bottom) / 250, 1),
             "kinds": KINDS,
         }
-        title = f"{counted(len(cars), 'car')} with the assistant, {100 * outcome.share:g}% of all, seed {row.seed}"
+        title = f"{counted(len(cars), 'car')} with the assistant, {percent(outcome.share)} of all, seed {row.seed}"
         pages[name] = render(
             "studies/adoption/fleet.html",
             **drawn,
@@ -80,7 +80,7 @@ def fleets(study: AdoptionStudy) -> tuple[str, dict[str, str]]:
             map=render("studies/adoption/map.html", **drawn, page=""),
         )
         last = render("studies/adoption/map.html", **drawn, page=name)
-        links.append(f'<a href="{name}">{100 * outcome.share:g}%, {counted(len(cars), "car")}</a>')
+        links.append(f'<a href="{name}">{percent(outcome.share)}, {counted(len(cars), "car")}</a>')
     told = (
         f'<h2 id="cars">The cars of seed {row.seed}</h2>\n<p>Each car by itself: {" · ".join(links)}</p>'
         if row
@@ -159,16 +159,16 @@ def answer(study: AdoptionStudy) -> str:
     least = mean(study, shares[0], EQUIPPED) if shares else None
     if least is None:
         return "No car of any share had the assistant."
-    text = f"With the assistant in {100 * shares[0]:g}% of the cars, one that has it arrives {_sooner(least.value)}"
+    text = f"With the assistant in {percent(shares[0])} of the cars, one that has it arrives {_sooner(least.value)}"
     herding = gone(study)
     if herding is not None:
         _, half, part = herding
         then = mean(study, half, EQUIPPED)
         assert then is not None
-        text += f"; in {100 * half:g}%, {_sooner(then.value)}: {part:.0%} of the gain is gone"
+        text += f"; in {percent(half)}, {_sooner(then.value)}: {part:.0%} of the gain is gone"
     everybody = mean(study, shares[-1], ALL)
     if everybody is not None:
-        text += f". In {100 * shares[-1]:g}%, all cars together arrive {_sooner(everybody.value)} per car"
+        text += f". In {percent(shares[-1])}, all cars together arrive {_sooner(everybody.value)} per car"
     return f"{text}; over {counted(least.seeds, 'seed')}."
 
 
@@ -211,7 +211,7 @@ def effects(study: AdoptionStudy) -> Table:
         "Energy, Wh/km": (lambda each: each.all.energy_wh_km, ".0f"),
     }
     rows = tuple(
-        (f"{100 * share:g}%", *(told_mean(mean(study, share, of), form) for of, form in columns.values()))
+        (f"{percent(share)}", *(told_mean(mean(study, share, of), form) for of, form in columns.values()))
         for share in study.shares
     )
     note = (
@@ -234,7 +234,7 @@ def assistants(study: AdoptionStudy) -> Table:
     for share in study.shares:
         per = mean(study, share, lambda each: each.warnings / each.hazards if each.hazards else None)
         told = (told_mean(mean(study, share, of), ".1f") for of in columns.values())
-        rows.append((f"{100 * share:g}%", *told, NONE if per is None else told_mean(per, ".1f")))
+        rows.append((f"{percent(share)}", *told, NONE if per is None else told_mean(per, ".1f")))
     note = "A hazard: warnings of one kind on one road within a minute are of the same."
     return Table(
         "assistants", "What the assistants did", ("Share", *columns, "Warnings a hazard"), tuple(rows), note
