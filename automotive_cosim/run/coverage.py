@@ -95,8 +95,10 @@ def is_outdated(row: EpisodeRow) -> bool:
     """Whether the half of the task has changed since, or is gone; rows of 0.2.0 do not tell."""
     if not row.half_digest:
         return False
-    task = CATALOGUE.get(row.task)
-    return task is None or row.half not in task.halves or fingerprint(task, row.half) != row.half_digest
+    if row.task not in CATALOGUE:
+        return True
+    task = CATALOGUE[row.task]
+    return row.half not in task.halves or fingerprint(task, row.half) != row.half_digest
 
 
 def unit_of(plan: Json) -> str:
