@@ -1,7 +1,5 @@
 """OpenSCENARIO XML as a scenario: the declared subset, and what is outside."""
 
-from __future__ import annotations
-
 import math
 from datetime import datetime
 

@@ -1,7 +1,5 @@
 """What a format needs is told before any work."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

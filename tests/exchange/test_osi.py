@@ -1,7 +1,5 @@
 """A recorded trial as a trace of OSI ground truth, read back by the reader of asam-osi-utilities."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

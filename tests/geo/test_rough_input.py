@@ -1,7 +1,5 @@
 """Whatever position, time, road, weather or rule file comes: an answer, or one line that says what is wrong."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -1,8 +1,6 @@
 """The limit of every combination of tags that the OSM wiki documents (pages "Key:maxspeed", "Key:maxspeed:type",
 "Key:source:maxspeed", "Key:zone:maxspeed", "Key:zone:traffic", "Lanes", "Conditional restrictions")."""
 
-from __future__ import annotations
-
 import re
 import string
 from dataclasses import replace

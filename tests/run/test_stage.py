@@ -1,7 +1,5 @@
 """Stages of a job: each is told once, and its amounts not more often than once a second."""
 
-from __future__ import annotations
-
 import pytest
 
 from automotive_cosim.run import stage

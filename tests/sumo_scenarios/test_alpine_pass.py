@@ -1,7 +1,5 @@
 """The San Bernardino as drawn against the San Bernardino as it is known."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from itertools import pairwise

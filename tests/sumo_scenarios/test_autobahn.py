@@ -1,7 +1,5 @@
 """The A 5 as drawn: limits, lanes, exits, roadworks, and what the ego meets of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import groupby
 from typing import Any

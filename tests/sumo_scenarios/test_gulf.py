@@ -1,7 +1,5 @@
 """Dubai as drawn against Dubai as it is known."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from datetime import timedelta
 from typing import Any

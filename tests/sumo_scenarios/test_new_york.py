@@ -1,7 +1,5 @@
 """Manhattan as drawn against Manhattan as it is known."""
 
-from __future__ import annotations
-
 import gzip
 import math
 import xml.etree.ElementTree as ET

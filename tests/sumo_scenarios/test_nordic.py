@@ -1,7 +1,5 @@
 """Kiruna as drawn against Kiruna as it is known."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from datetime import timedelta
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Paris as drawn against Paris as it is known."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The périphérique as drawn against the périphérique as it is known."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

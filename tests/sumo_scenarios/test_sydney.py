@@ -1,7 +1,5 @@
 """Windsor and the Putty Road as drawn against what is known of them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from contextlib import closing

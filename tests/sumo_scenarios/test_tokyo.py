@@ -1,7 +1,5 @@
 """Tokyo as drawn against Tokyo as it is known."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 

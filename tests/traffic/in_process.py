@@ -1,7 +1,5 @@
 """libsumo in the process of the tests, where they reach the ``World``; ``fork.Forked`` must drive the same."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 
@@ -28,7 +26,7 @@ class InProcess:
     A second ``depart`` loads and warms up again.
     """
 
-    _current: InProcess | None = None
+    _current: "InProcess | None" = None
 
     def __init__(
         self,
@@ -64,7 +62,7 @@ class InProcess:
             raise
         self._fresh = True
 
-    def depart(self, plan: EgoPlan) -> InProcessTraffic:
+    def depart(self, plan: EgoPlan) -> "InProcessTraffic":
         """Starts the ego; ends the previous drive.
 
         Raises:
