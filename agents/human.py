@@ -1,7 +1,5 @@
 """A person at the terminal, with numbered elements and a prompt: the same information as T3A."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from typing import TextIO

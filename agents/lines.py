@@ -1,7 +1,5 @@
 """Texts from outside, on lines of their own."""
 
-from __future__ import annotations
-
 import re
 
 

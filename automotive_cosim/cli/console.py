@@ -1,7 +1,5 @@
 """Tables, panels and progress in a terminal."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

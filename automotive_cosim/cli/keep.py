@@ -1,7 +1,5 @@
 """``automotive-cosim keep``: warm traffic that outlives the command."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

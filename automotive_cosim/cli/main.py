@@ -4,8 +4,6 @@ Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an inf
 130 interrupted, 141 the reader of its output is gone, 143 terminated.
 """
 
-from __future__ import annotations
-
 import ast
 import io
 import os

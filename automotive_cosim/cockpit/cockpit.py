@@ -9,8 +9,6 @@ Every action answers with a ``Feedback`` and never raises; a wrong one changes n
 determined by the calls: time comes only from ``sense``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
@@ -308,7 +306,7 @@ class Cockpit:
         for path, value in (sensors or {}).items():
             self.inject(path, value)
 
-    def copy(self) -> Cockpit:
+    def copy(self) -> "Cockpit":
         twin = Cockpit.__new__(Cockpit)
         twin._state = self._state.copy()
         twin._tree = self._tree
@@ -332,8 +330,8 @@ class Cockpit:
         self._tree = None
 
     def freshened(
-        self, departed: Cockpit, surroundings: Surroundings, way: timedelta, *, with_air: bool
-    ) -> Cockpit:
+        self, departed: "Cockpit", surroundings: Surroundings, way: timedelta, *, with_air: bool
+    ) -> "Cockpit":
         """A copy as if it had just departed here, for the arguments of ``fresh.put_back``."""
         twin = self.copy()
         put_back(twin._state, departed._state, surroundings, way, with_air=with_air)

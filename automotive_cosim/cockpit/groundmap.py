@@ -1,7 +1,5 @@
 """Water, green and buildings as pictures show them, under everything else."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

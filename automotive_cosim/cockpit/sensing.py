@@ -1,7 +1,5 @@
 """Updates the car's signals, air, glass and battery from the surroundings."""
 
-from __future__ import annotations
-
 import math
 
 from automotive_cosim.cockpit.apps.settings.state import wifi

@@ -1,7 +1,5 @@
 """What the car itself notices around, ahead and aboard."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 

@@ -3,8 +3,6 @@
 {"participants": {ROLE: URL}, "config": {...}}  ->  a plan  ->  an evaluation  ->  {"score", ..., "rows"}
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass

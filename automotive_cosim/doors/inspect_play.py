@@ -1,8 +1,6 @@
 """What both of Inspect's tasks share: the tool ``act``, and an episode from start to verdict."""
 
 # pyright: reportMissingImports=false
-from __future__ import annotations
-
 import base64
 import json
 from collections.abc import Callable

@@ -8,8 +8,6 @@ it is. Needs the package ``inspect-ai``
 """
 
 # pyright: reportMissingImports=false
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

@@ -1,7 +1,5 @@
 """Where an OpenSCENARIO file's positions are on the lanes of a network, and what leads from one to another."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

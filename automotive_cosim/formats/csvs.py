@@ -1,7 +1,5 @@
 """Tables as comma-separated values."""
 
-from __future__ import annotations
-
 import csv
 import gzip
 from collections.abc import Iterable, Iterator

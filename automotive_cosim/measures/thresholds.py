@@ -1,7 +1,5 @@
 """From when on an encounter is critical."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """The protocol of models: messages in; text, tokens, time and cost out."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """An area between two meridians and two parallels."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -20,7 +18,7 @@ class Area(NamedTuple):
     north_deg: float
 
     @staticmethod
-    def parse(text: str) -> Area:
+    def parse(text: str) -> "Area":
         """Reads ``WEST,SOUTH,EAST,NORTH``.
 
         Raises:

@@ -1,7 +1,5 @@
 """What can be set about proofs. Each field is an option of ``tasks validate``."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +20,7 @@ class PartOf:
     of: int
 
     @classmethod
-    def read(cls, text: str) -> PartOf:
+    def read(cls, text: str) -> "PartOf":
         """The part that a text names.
 
         Raises:

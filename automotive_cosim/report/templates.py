@@ -1,7 +1,5 @@
 """Renders self-contained pages from templates."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 

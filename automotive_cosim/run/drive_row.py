@@ -1,7 +1,5 @@
 """The row of a drive, from which its report is made."""
 
-from __future__ import annotations
-
 from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Annotated

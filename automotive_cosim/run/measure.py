@@ -5,8 +5,6 @@ one simulated second is ten of SUMO's in one message. All times are medians over
 ``loop`` or ``memory`` and a scenario, it measures that part alone, in a process that has done nothing else.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

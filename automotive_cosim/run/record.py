@@ -3,8 +3,6 @@
 The folder is created when the agent takes over; an earlier failure leaves none.
 """
 
-from __future__ import annotations
-
 import gzip
 import json
 import platform

@@ -1,7 +1,5 @@
 """Writes ``road.jsonl.gz`` while an episode runs; ``road`` describes the format and reads it."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import math
@@ -113,7 +111,7 @@ class RoadFacts:
     events: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, moment: Moment) -> RoadFacts:
+    def of(cls, moment: Moment) -> "RoadFacts":
         """Those of a drive with a cockpit."""
         return cls(
             limit_kmh(limit_at(moment.context)),

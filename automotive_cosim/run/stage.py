@@ -3,8 +3,6 @@
 A worker's process says where this goes with ``telling``; elsewhere nobody is told.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """What can be set about the pages. Each field is an option of ``serve``."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,5 @@
 """The service of episodes."""
 
-from __future__ import annotations
-
 import secrets
 import threading
 import time

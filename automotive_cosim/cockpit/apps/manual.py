@@ -1,7 +1,5 @@
 """The owner's handbook, to search in and to watch."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any
 

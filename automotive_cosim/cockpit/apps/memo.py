@@ -1,7 +1,5 @@
 """Memos: the recorder, and one memo with its removal."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """Parking: the space, how long, and the tickets."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from datetime import timedelta
 from typing import Annotated, Any

@@ -1,7 +1,5 @@
 """Puts the sections together."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from automotive_cosim.safety.dossier.claims import CLAIMS, claims

@@ -4,8 +4,6 @@
 futures and others do not; where they do not, every other car aims at a slightly different speed instead.
 """
 
-from __future__ import annotations
-
 from contextlib import closing
 from enum import StrEnum
 from weakref import WeakKeyDictionary
@@ -32,7 +30,7 @@ class Fresh(StrEnum):
     """Every other car's speed factor was changed by ``JITTER`` times a normal variate."""
 
     @classmethod
-    def proven(cls, first: Trial, again: Trial, other: Trial) -> Fresh:
+    def proven(cls, first: "Trial", again: "Trial", other: "Trial") -> "Fresh":
         """What three copies prove, of which the first two had the same seed.
 
         Each has the first number of every generator and a fingerprint of the traffic after ``PROOF_S``.

@@ -1,7 +1,5 @@
 """``automotive-cosim study compare``: two runs of one study."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

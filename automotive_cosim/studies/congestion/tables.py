@@ -1,7 +1,5 @@
 """The tables of a congestion study."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from datetime import timedelta
 from statistics import fmean

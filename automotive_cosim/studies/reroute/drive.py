@@ -6,8 +6,6 @@ for bit the same traffic, and the same random numbers from there on. A replicate
 once more, with fresh random numbers from the decision on.
 """
 
-from __future__ import annotations
-
 import os
 from collections import deque
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The same study on several networks, in one table."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

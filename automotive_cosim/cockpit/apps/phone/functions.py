@@ -1,7 +1,5 @@
 """Functions of the phone: calls, messages, favourites."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """Settings: display and units, sound, connections, language and time, privacy, profiles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 
