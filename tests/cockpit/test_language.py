@@ -29,6 +29,7 @@ from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import Answer, Feedback, FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.contracts.text import Quantity, Text, counted, joined, listed, say, say_in
+from tests.cockpit.fingers import press
 
 from . import catalogues
 
@@ -118,11 +119,6 @@ IDENTIFIER = re.compile(r"#?[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)*")
 def texts(widget: Widget) -> Iterator[str]:
     for one in widget.walk():
         yield from (getattr(one, name) for name in TEXTS if getattr(one, name, ""))
-
-
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
-    return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
 @pytest.fixture(scope="module")

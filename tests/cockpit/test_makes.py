@@ -17,9 +17,10 @@ from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.ids import key_of, resource_id
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import parse
+from tests.cockpit.fingers import middle
 from tests.laws import over
 
-from .conftest import middle, outside
+from .conftest import outside
 
 MAKES = [name for name in CarMake if name not in (CarMake.HOME, CarMake.DRAWN)]
 FOLDER = files("automotive_cosim.cockpit").joinpath("makes")

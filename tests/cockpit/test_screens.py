@@ -32,7 +32,6 @@ from automotive_cosim.contracts import (
     Answer,
     Connectivity,
     Direction,
-    Element,
     FeedbackCode,
     GpsFix,
     Reroute,
@@ -44,20 +43,11 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
+from tests.cockpit.fingers import middle, press
 from tests.laws import hold, over
 
 Make = Callable[..., Cockpit]
 DOES = (FeedbackCode.OK, FeedbackCode.READ_OUT, FeedbackCode.REFUSED)
-
-
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    element = next(element for element in cockpit.elements() if element.resource_id == shown_id(key))
-    return cockpit.tap(*middle(element)).code
-
-
-def middle(element: Element) -> tuple[int, int]:
-    box = element.bbox_pixels
-    return (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
 
 
 def busy(cockpit: Cockpit) -> Cockpit:
