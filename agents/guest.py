@@ -35,11 +35,7 @@ class Guest:
     """A guest agent behind this project's protocol. An error of its own costs it the step and is reported."""
 
     def __init__(self, agent: Any) -> None:
-        """Takes an object that has ``reset`` and ``act``.
-
-        Raises:
-            UserError: its ``channels`` are invalid.
-        """
+        """Takes an object that has ``reset`` and ``act``. Raises UserError: its ``channels`` are invalid."""
         self._agent = agent
         self.name = str(getattr(agent, "name", type(agent).__name__))
         self.model = str(getattr(agent, "model", "none"))
@@ -49,11 +45,7 @@ class Guest:
             raise UserError(f"agent {self.name!r}: {error}; channels are {', '.join(Channel)}") from error
 
     def reset(self, goal: str) -> None:
-        """Passes the goal on.
-
-        Raises:
-            UserError: the agent raised.
-        """
+        """Passes the goal on. Raises UserError: the agent raised."""
         try:
             with aside():
                 self._agent.reset(goal)

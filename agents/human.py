@@ -86,11 +86,7 @@ class Human:
 
 
 def understood(line: str) -> Action:
-    """The action that a line of input means.
-
-    Raises:
-        ActionError: it is not an action.
-    """
+    """The action that a line of input means. Raises ActionError: it is not an action."""
     line = line.strip()
     if line.startswith("{"):
         return parse(line)

@@ -64,19 +64,11 @@ class Wire:
             raise GoneError from error
 
     def send_json(self, message: Json) -> None:
-        """Sends a JSON object, to the harness.
-
-        Raises:
-            GoneError: the other side is gone.
-        """
+        """Sends a JSON object, to the harness. Raises GoneError: the other side is gone."""
         self.send(json.dumps(message).encode())
 
     def receive_object(self) -> Any:
-        """Waits for an object of the harness.
-
-        Raises:
-            GoneError: the other side is gone.
-        """
+        """Waits for an object of the harness. Raises GoneError: the other side is gone."""
         return pickle.loads(self._receive(None))
 
     def receive_json(self, within_s: float) -> Json:
@@ -90,22 +82,14 @@ class Wire:
         return _json(bytes(self._receive(time.monotonic() + within_s, LONGEST_BYTES)))
 
     def send_socket(self, connection: socket.socket) -> None:
-        """Sends a socket.
-
-        Raises:
-            GoneError: the other side is gone.
-        """
+        """Sends a socket. Raises GoneError: the other side is gone."""
         try:
             socket.send_fds(self._socket, [b"s"], [connection.fileno()])
         except OSError as error:
             raise GoneError from error
 
     def receive_socket(self) -> socket.socket:
-        """Receives a socket.
-
-        Raises:
-            GoneError: the other side is gone.
-        """
+        """Receives a socket. Raises GoneError: the other side is gone."""
         _, descriptors, _, _ = socket.recv_fds(self._socket, 1, 1)
         if not descriptors:
             raise GoneError

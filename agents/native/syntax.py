@@ -29,11 +29,7 @@ class Syntax(Protocol):
         ...
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
-        """The calls in an answer, in order.
-
-        Raises:
-            ActionError: it has none.
-        """
+        """The calls in an answer, in order. Raises ActionError: it has none."""
         ...
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:

@@ -141,11 +141,7 @@ class ProgressView(Generic[R]):
 
 
 def check_prices(models: Iterable[str], budget: Budget) -> None:
-    """Refuses a budget in dollars for models without a price.
-
-    Raises:
-        UserError: a model at an endpoint has none.
-    """
+    """Refuses a budget in dollars for models without a price. Raises UserError: a model at an endpoint has none."""
     if budget.usd is None:
         return
     for name in models:
@@ -179,11 +175,7 @@ def minutes_in_words(seconds: Range) -> str:
 
 
 def tell_stopped(end: Progress[Any]) -> None:
-    """Ends a command whose budget did not last.
-
-    Raises:
-        UserError: something was not run because of the budget.
-    """
+    """Ends a command whose budget did not last. Raises UserError: something was not run because of the budget."""
     if end.stopped:
         left = counted(end.planned - end.done, "run")
         raise UserError(f"{end.stopped}; {left} left: rerun with a larger budget to continue")
@@ -200,11 +192,7 @@ def tell_notes(scenarios: Iterable[Scenario], *, runs: bool = True) -> None:
 
 
 def words(name: str, text: str) -> list[str]:
-    """The words between commas.
-
-    Raises:
-        UserError: there are none.
-    """
+    """The words between commas. Raises UserError: there are none."""
     found = [word.strip() for word in text.split(",") if word.strip()]
     if not found:
         raise UserError(f"--{name} is empty; omit it to use the default")
@@ -227,11 +215,7 @@ def whole_numbers_in(name: str, text: str) -> list[int]:
 
 
 def numbers_in(name: str, text: str) -> list[float]:
-    """The numbers in the option ``--name``, separated by commas.
-
-    Raises:
-        UserError: one of them is none.
-    """
+    """The numbers in the option ``--name``, separated by commas. Raises UserError: one of them is none."""
     found = []
     for word in words(name, text):
         try:

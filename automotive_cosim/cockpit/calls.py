@@ -144,11 +144,7 @@ def _by_screen() -> Mapping[str, App]:
 
 
 def function_named(name: str) -> CarFunction:
-    """The function of that name.
-
-    Raises:
-        ActionError: there is none.
-    """
+    """The function of that name. Raises ActionError: there is none."""
     if name not in functions():
         raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim show functions")))
     return functions()[name]

@@ -478,11 +478,7 @@ class LINK:
 
 
 def named(path: str) -> Signal[Any]:
-    """The signal of that path.
-
-    Raises:
-        UnknownNameError: there is no such signal.
-    """
+    """The signal of that path. Raises UnknownNameError: there is no such signal."""
     try:
         return CATALOGUE[path]
     except KeyError:

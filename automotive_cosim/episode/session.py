@@ -618,11 +618,7 @@ class Baseline:
         return list(later)[::-1]
 
     def follow(self, time_s: float) -> None:
-        """Drives to that simulation time.
-
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        """Drives to that simulation time. Raises TrafficError: the traffic simulation failed."""
         while self._is_before(time_s):
             assert self._own is not None, "the episode's drive went on without the baseline run"
             self._moments += self._own.advance(TICK_S)
@@ -650,11 +646,7 @@ class JudgedSession(Session, ABC):
         """Whether it has been judged: false while it runs, and if it broke."""
 
     def drive_on(self) -> None:
-        """What is still driven once it is over, for the record.
-
-        Raises:
-            InfrastructureError: the road failed.
-        """
+        """What is still driven once it is over, for the record. Raises InfrastructureError: the road failed."""
 
     @property
     def baseline_moments(self) -> tuple[Moment, ...]:

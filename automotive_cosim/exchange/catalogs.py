@@ -64,11 +64,7 @@ class Catalogs:
     """The catalogs of a file."""
 
     def __init__(self, root: XmlElement) -> None:
-        """Notes where they are.
-
-        Raises:
-            ScenarioError: a place has no folder.
-        """
+        """Notes where they are. Raises ScenarioError: a place has no folder."""
         self._folders: list[Path] = []
         self._read: dict[Path, XmlElement] = {}
         rows = table()
@@ -158,11 +154,7 @@ def _declared(element: XmlElement, scope: Mapping[str, str]) -> Mapping[str, str
 
 
 def unread(element: XmlElement) -> None:
-    """Checks that everything that is carried out has been asked for.
-
-    Raises:
-        ScenarioError: something has not.
-    """
+    """Checks that everything that is carried out has been asked for. Raises ScenarioError: something has not."""
     row = table().get(element.tag, NAMELESS)
     for name in element.attributes:
         if row.attributes.get(name) == CARRIED and name not in element.taken:

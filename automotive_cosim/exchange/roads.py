@@ -138,11 +138,7 @@ def _curve(geometry: XmlElement, along_m: float) -> Pose:
 
 
 def read_roads(path: Path) -> Mapping[str, OpenDriveRoad]:
-    """The roads of an OpenDRIVE file by their ids.
-
-    Raises:
-        ScenarioError: it cannot be read.
-    """
+    """The roads of an OpenDRIVE file by their ids. Raises ScenarioError: it cannot be read."""
     root = read_tree(path, KEPT)
     return {road.name: road for road in map(OpenDriveRoad, root.all("road"))}
 

@@ -202,11 +202,7 @@ def _takes(routing: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
 
 
 def route_goals(route: XmlElement) -> list[XmlElement]:
-    """The positions of a route.
-
-    Raises:
-        ScenarioError: it goes round, or has none.
-    """
+    """The positions of a route. Raises ScenarioError: it goes round, or has none."""
     if route.is_true("closed"):
         raise route.refused("has closed = true, which is not imported; end it at its last waypoint")
     goals = [waypoint.part("Position") for waypoint in route.all("Waypoint")]

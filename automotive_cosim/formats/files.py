@@ -40,11 +40,7 @@ def read_text(path: Path, error: type[UserError] = UserError) -> str:
 
 
 def read_bytes(path: Path) -> bytes:
-    """The content of a file, at most ``bounds.WHOLE_BYTES``.
-
-    Raises:
-        OSError: it cannot be read, or is larger.
-    """
+    """The content of a file, at most ``bounds.WHOLE_BYTES``. Raises OSError: it cannot be read, or is larger."""
     with open_file(path) as file:
         data = file.read(bounds.WHOLE_BYTES + 1)
     if len(data) > bounds.WHOLE_BYTES:
@@ -162,11 +158,7 @@ def is_file(path: Path) -> bool:
 
 
 def file_sha256(path: Path) -> str:
-    """The hash of a file's content, in hexadecimal.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """The hash of a file's content, in hexadecimal. Raises OSError: it cannot be read."""
     found = hashlib.sha256()
     with open_file(path) as file:
         while piece := file.read(bounds.CHUNK_BYTES):
@@ -274,11 +266,7 @@ class _Unpacked(io.RawIOBase):
 
 
 def is_utf8(path: Path) -> bool:
-    """Whether the text of a file, packed or not, is in UTF-8.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """Whether the text of a file, packed or not, is in UTF-8. Raises OSError: it cannot be read."""
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         with opened(path) as file:

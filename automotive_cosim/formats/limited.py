@@ -59,11 +59,7 @@ class LimitedProcesses:
         return self._result(self._submitted(what, given))
 
     def map(self, what: Callable[..., T], *given: Iterable[Any]) -> Iterator[T]:
-        """The same for many calls, in their order.
-
-        Raises:
-            UserError: as ``call``.
-        """
+        """The same for many calls, in their order. Raises UserError: as ``call``."""
         futures = [self._submitted(what, each) for each in zip(*given, strict=True)]
         return map(self._result, futures)
 

@@ -70,20 +70,12 @@ class Document:
 
 
 def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
-    """Reads a file.
-
-    Raises:
-        UserError: of that class: it cannot be read, or is not TOML.
-    """
+    """Reads a file. Raises UserError: of that class: it cannot be read, or is not TOML."""
     return parse(read_text(path, error), path, error)
 
 
 def parse(text: str, path: Path, error: type[UserError] = UserError) -> Document:
-    """A document from the text of a file.
-
-    Raises:
-        UserError: of that class: it is not TOML.
-    """
+    """A document from the text of a file. Raises UserError: of that class: it is not TOML."""
     try:
         if _DEEP.search(text):
             raise RecursionError

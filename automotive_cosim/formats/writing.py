@@ -289,11 +289,7 @@ def _exchange(building: Path, out: Path, replaced: Path | None) -> None:
 
 
 def check_writable(folder: Path) -> None:
-    """Tries whether a folder takes anything, which its permissions do not tell.
-
-    Raises:
-        OSError: it does not.
-    """
+    """Tries whether a folder takes anything, which its permissions do not tell. Raises OSError: it does not."""
     probe = folder / f".{secrets.token_hex(8)}.part"
     probe.mkdir()
     probe.rmdir()

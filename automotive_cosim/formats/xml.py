@@ -120,11 +120,7 @@ def without_collection() -> Iterator[None]:
 
 
 def read_tree(path: Path, *, error: type[UserError]) -> ET.Element:
-    """A file that is kept whole.
-
-    Raises:
-        UserError: of that class, as ``scan``.
-    """
+    """A file that is kept whole. Raises UserError: of that class, as ``scan``."""
     builder = ET.TreeBuilder()
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
@@ -162,9 +158,5 @@ def read_root(path: Path, *, error: type[UserError]) -> ET.Element:
 
 
 def write_xml(path: Path, root: ET.Element) -> None:
-    """Writes a document whole or not at all.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Writes a document whole or not at all. Raises OSError: it cannot be written."""
     write_whole(path, ET.tostring(root, encoding="UTF-8", xml_declaration=True))

@@ -156,11 +156,7 @@ def _object(name: str, text: str) -> dict[str, Any]:
 
 
 def call_of(action: Action) -> tuple[str, Json]:
-    """The call that does what an action does: name and arguments.
-
-    Raises:
-        ActionError: it acts on the screen.
-    """
+    """The call that does what an action does: name and arguments. Raises ActionError: it acts on the screen."""
     if action.action_type in BY_HAND:
         raise ActionError(f"{action.action_type} acts on the screen; no function does that")
     if action.action_type is ActionType.CALL:

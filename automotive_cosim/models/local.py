@@ -103,11 +103,7 @@ class Local:
 
 
 def packaged() -> Path:
-    """The file of the first model that an installed package ships.
-
-    Raises:
-        SetupError: none is installed.
-    """
+    """The file of the first model that an installed package ships. Raises SetupError: none is installed."""
     for package in PACKAGED:
         spec = find_spec(package)
         for folder in () if spec is None else spec.submodule_search_locations or ():

@@ -94,11 +94,7 @@ class Replay:
         return cls(answers, told["sees_pictures"], text_digest, f"{given} --agent {told['agent']}")
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
-        """The next recorded answer.
-
-        Raises:
-            ModelError: there is none left, or it answered another question.
-        """
+        """The next recorded answer. Raises ModelError: there is none left, or it answered another question."""
         number = self._count - len(self._left) + 1
         if not self._left:
             raise ModelError(f"the recording has {self._count} answers, but question {number} was asked")

@@ -221,11 +221,7 @@ def _copy(answer: http.client.HTTPResponse, file: IO[bytes], limits: DownloadLim
 
 
 def _judge(file: Path, endpoint: str) -> Download:
-    """Checks that an answer is a complete map.
-
-    Raises:
-        UserError: it is not.
-    """
+    """Checks that an answer is a complete map. Raises UserError: it is not."""
     size = file.stat().st_size
     with file.open("rb") as stream:
         head = stream.read(4096).decode("utf-8", "replace")

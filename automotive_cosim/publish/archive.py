@@ -38,11 +38,7 @@ def members(folder: Path) -> list[str]:
 
 
 def pack(folder: Path, file: IO[bytes]) -> None:
-    """Packs the files of a folder.
-
-    Raises:
-        OSError: the archive cannot be written.
-    """
+    """Packs the files of a folder. Raises OSError: the archive cannot be written."""
     with zipfile.ZipFile(file, "w") as archive:
         for name in members(folder):
             entry = zipfile.ZipInfo(name, _LONG_AGO)
@@ -54,11 +50,7 @@ def pack(folder: Path, file: IO[bytes]) -> None:
 
 @contextmanager
 def unpacked(bundle: Path) -> Iterator[Path]:
-    """A bundle's files in a folder that is removed afterwards.
-
-    Raises:
-        UserError: as ``unpack``.
-    """
+    """A bundle's files in a folder that is removed afterwards. Raises UserError: as ``unpack``."""
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
         unpack(bundle, Path(name))
         yield Path(name)

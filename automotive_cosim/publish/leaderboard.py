@@ -196,11 +196,7 @@ def _contestants(bundle: Path) -> tuple[list[BoardEntry], list[DrivenEntry]]:
 
 
 def read_entries(bundle: Path) -> list[BoardEntry]:
-    """The contestants of a bundle.
-
-    Raises:
-        UserError: it cannot be read.
-    """
+    """The contestants of a bundle. Raises UserError: it cannot be read."""
     with archive.unpacked(bundle) as folder:
         contents, results = read_contents(folder), read_results(folder)
     made = []
@@ -220,11 +216,7 @@ def _rate(rows: Iterable[TrialRow]) -> Rate:
 
 
 def read_driven(bundle: Path) -> list[DrivenEntry]:
-    """The contestants of a bundle's drives.
-
-    Raises:
-        UserError: it cannot be read.
-    """
+    """The contestants of a bundle's drives. Raises UserError: it cannot be read."""
     with archive.unpacked(bundle) as folder:
         contents, results = read_contents(folder), read_results(folder)
     rows = (*results.drives, *results.drives_not_run)

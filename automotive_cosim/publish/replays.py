@@ -63,11 +63,7 @@ class Replayed(NamedTuple):
 
 
 def replay(folder: Path, job: TrialSetup, row: TrialRow, simulations: Simulations) -> Replayed:
-    """What differs, bit for bit, when a stored trial is replayed.
-
-    Raises:
-        CosimError: it cannot be replayed.
-    """
+    """What differs, bit for bit, when a stored trial is replayed. Raises CosimError: it cannot be replayed."""
     *steps, last = read_trace(folder, row.id)
     agent = _answered(job, row, steps)
     if agent is not None:

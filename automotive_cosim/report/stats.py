@@ -102,11 +102,7 @@ def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> In
 
 
 def distributions() -> Any:
-    """``scipy.stats``, for the bounds of rates.
-
-    Raises:
-        SetupError: scipy is not installed.
-    """
+    """``scipy.stats``, for the bounds of rates. Raises SetupError: scipy is not installed."""
     try:
         from scipy import stats
     except ImportError as error:

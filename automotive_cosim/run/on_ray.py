@@ -218,11 +218,7 @@ def _probe(address: str) -> None:
 
 
 def _check_same(node: str, theirs: Json) -> None:
-    """Refuses a node whose results would differ from ours.
-
-    Raises:
-        UserError: it has other versions.
-    """
+    """Refuses a node whose results would differ from ours. Raises UserError: it has other versions."""
     here, there = _compared(stamp()), _compared(theirs)
     for name in here.keys() & there.keys():  # a checkout here and a wheel there: only versions can be compared
         if here[name] != there[name]:

@@ -111,11 +111,7 @@ def recorded(folder: Path, trial: str = "") -> Recorded:
 
 
 def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
-    """The one id that equals or begins with the given text.
-
-    Raises:
-        UserError: there is none, or several.
-    """
+    """The one id that equals or begins with the given text. Raises UserError: there is none, or several."""
     matching = [name for name in ids if name == asked] or [name for name in ids if name.startswith(asked)]
     some = ", ".join(sorted(matching or ids)[:SHOWN]) or "none yet"
     if not matching:

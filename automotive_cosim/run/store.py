@@ -199,11 +199,7 @@ def read_rows(folder: Path, kind: RowKind[R]) -> dict[str, R]:
 
 
 def read_manifest(folder: Path) -> Json:
-    """The manifest of an evaluation.
-
-    Raises:
-        UserError: there is none, or it has another format.
-    """
+    """The manifest of an evaluation. Raises UserError: there is none, or it has another format."""
     path = folder / "manifest.json"
     try:
         manifest: Json = files.read_json(path)

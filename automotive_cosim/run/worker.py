@@ -46,11 +46,7 @@ def run_job(
     fork_server: ForkServer,
     meter: MeterHandle | None = None,
 ) -> TrialRow:
-    """Runs one trial with its agent, as ``run_with`` does.
-
-    Raises:
-        OSError: trace or pictures cannot be written.
-    """
+    """Runs one trial with its agent, as ``run_with`` does. Raises OSError: trace or pictures cannot be written."""
     return run_with(agent_of(job, fork_server, meter), job, folder, pictures, simulations)
 
 

@@ -66,11 +66,7 @@ class EvenSampler:
     """Spreads its points evenly: Sobol's sequence, scrambled, or a Latin hypercube (scipy.stats.qmc)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator, *, latin: bool = False) -> None:
-        """Lays out ``budget`` points.
-
-        Raises:
-            SetupError: scipy is not installed.
-        """
+        """Lays out ``budget`` points. Raises SetupError: scipy is not installed."""
         try:
             from scipy.stats import qmc
         except ImportError as missing:
@@ -178,11 +174,7 @@ class CmaSampler:
     """Spreads points evenly, then adapts a normal distribution to the worst one (CMA-ES, ``cma``)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
-        """Lays out its first points.
-
-        Raises:
-            SetupError: cma is not installed.
-        """
+        """Lays out its first points. Raises SetupError: cma is not installed."""
         try:
             import cma
         except ImportError as missing:
@@ -225,11 +217,7 @@ class BayesSampler:
     """Models which values fail (tree-structured Parzen estimators, ``optuna``)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
-        """Starts a study in memory.
-
-        Raises:
-            SetupError: optuna is not installed.
-        """
+        """Starts a study in memory. Raises SetupError: optuna is not installed."""
         try:
             import optuna
         except ImportError as missing:

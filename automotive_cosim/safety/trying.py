@@ -30,11 +30,7 @@ from automotive_cosim.traffic.fork import Simulations
 
 
 def trial_of(point: SearchPoint, repeat: int = 0) -> PlannedTrial:
-    """The trial at a point.
-
-    Raises:
-        UserError: a value does not exist.
-    """
+    """The trial at a point. Raises UserError: a value does not exist."""
     values: dict[str, Any] = {"repeat": repeat, "conditions": {}, "settings": {}}
     for name, value in point.items():
         if name in CONDITIONS:
@@ -47,11 +43,7 @@ def trial_of(point: SearchPoint, repeat: int = 0) -> PlannedTrial:
 
 
 def check_space(space: Space, plan: Plan) -> None:
-    """Tries every value, each with all other factors at nominal.
-
-    Raises:
-        UserError: a value does not exist.
-    """
+    """Tries every value, each with all other factors at nominal. Raises UserError: a value does not exist."""
     for factor in space.factors:
         ends = factor.values if isinstance(factor, FactorChoices) else (factor.least, factor.most)
         for value in ends:
@@ -62,11 +54,7 @@ def check_space(space: Space, plan: Plan) -> None:
 
 
 def job_of(plan: Plan, trial: PlannedTrial) -> TrialSetup:
-    """The job of a trial for the plan's agent.
-
-    Raises:
-        UserError: it cannot be run.
-    """
+    """The job of a trial for the plan's agent. Raises UserError: it cannot be run."""
     if trial.task and trial.scenario and trial.scenario not in CATALOGUE[trial.task].runs_in:
         raise UserError(f"{trial.task} cannot run in {trial.scenario}")
     return trial.job(plan.agents[0], plan.models[0], 0, plan.limits, plan.spare_traffic)

@@ -65,11 +65,7 @@ def all_scenarios() -> Json:
 
 
 def scenario_map(name: str) -> Path:
-    """The picture of a shipped scenario's network.
-
-    Raises:
-        NotHereError: there is none.
-    """
+    """The picture of a shipped scenario's network. Raises NotHereError: there is none."""
     path = scenarios.load(name).folder / "map.webp" if name in scenarios.shipped() else None
     if path is None or not path.is_file():
         raise NotHereError(f"there is no map of a scenario {name!r}")

@@ -100,11 +100,7 @@ class Content:
         }
 
     def steps(self, name: str, episode: str | None, skip: int) -> Json:
-        """The steps of an episode from number ``skip`` on.
-
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        """The steps of an episode from number ``skip`` on. Raises UserError: it is not here, or cannot be read."""
         entry = self.records.entry(name)
         folder = self.records.trial(entry, episode)
         lines = _steps_in(folder, *_stamp(folder))[skip:]
@@ -155,11 +151,7 @@ class Content:
         return list(_alone(read_trial(folder).get("result") or {}))[skip:]
 
     def evaluation(self, name: str) -> Json:
-        """The plan and the rows of an evaluation.
-
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        """The plan and the rows of an evaluation. Raises UserError: it is not here, or cannot be read."""
         entry = self.records.entry(name)
         if not entry.is_evaluation:
             raise NotHereError(f"record {name!r} is not an evaluation")

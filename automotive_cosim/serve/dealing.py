@@ -64,11 +64,7 @@ class PeoplePlan:
 
 
 def read_study(path: Path) -> PeoplePlan:
-    """A study's plan from its file.
-
-    Raises:
-        UserError: it cannot be read, or does not fit.
-    """
+    """A study's plan from its file. Raises UserError: it cannot be read, or does not fit."""
     return read_toml(path).read(PeoplePlan)
 
 

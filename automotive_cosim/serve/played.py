@@ -149,11 +149,7 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
         return replace(found, repeat=self._first(lambda repeat: replace(found, repeat=repeat).id))
 
     def keep(self, row: EpisodeRow) -> None:
-        """Adds a row.
-
-        Raises:
-            UserError: it cannot be written.
-        """
+        """Adds a row. Raises UserError: it cannot be written."""
         self._append(row)
 
     def plan_of(self, rows: Sequence[EpisodeRow]) -> Json:
@@ -172,11 +168,7 @@ class PlayedDrives(PlayedRows[DriveTrialRow]):
     kind = DriveTrialRow
 
     def drive(self, family: str, seed: int, name: str) -> DriveSetup:
-        """The next drive of a person.
-
-        Raises:
-            UserError: another process writes here.
-        """
+        """The next drive of a person. Raises UserError: another process writes here."""
 
         def at(repeat: int) -> DriveSetup:
             return DriveSetup(family, seed, CONDITIONS, agent=HUMAN, model=name, repeat=repeat)
@@ -184,11 +176,7 @@ class PlayedDrives(PlayedRows[DriveTrialRow]):
         return at(self._first(lambda repeat: at(repeat).id))
 
     def keep(self, row: DriveTrialRow) -> None:
-        """Adds a drive.
-
-        Raises:
-            UserError: it cannot be written.
-        """
+        """Adds a drive. Raises UserError: it cannot be written."""
         self._append(row)
 
     def plan_of(self, rows: Sequence[DriveTrialRow]) -> Json:

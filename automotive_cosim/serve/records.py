@@ -38,11 +38,7 @@ class RecordFolders:
     """The records below some folders."""
 
     def __init__(self, folders: Sequence[Path]) -> None:
-        """Keeps the folders, which may still be empty.
-
-        Raises:
-            UserError: one of them is not a folder.
-        """
+        """Keeps the folders, which may still be empty. Raises UserError: one of them is not a folder."""
         for folder in folders:
             if not folder.is_dir():
                 raise UserError(
@@ -58,11 +54,7 @@ class RecordFolders:
         return sorted(found.values(), key=lambda entry: _changed_s(entry.folder), reverse=True)[:MOST]
 
     def entry(self, name: str) -> RecordEntry:
-        """The record of that id.
-
-        Raises:
-            NotHereError: there is none.
-        """
+        """The record of that id. Raises NotHereError: there is none."""
         if name not in self._known:
             self.entries()
         found = self._known.get(name)
@@ -71,11 +63,7 @@ class RecordFolders:
         return found
 
     def of(self, folder: Path) -> RecordEntry:
-        """The recorded trial in a folder.
-
-        Raises:
-            NotHereError: it is not below the folders given.
-        """
+        """The recorded trial in a folder. Raises NotHereError: it is not below the folders given."""
         return self.entry(_id(folder.resolve()))
 
     def beside(self, entry: RecordEntry) -> str | None:

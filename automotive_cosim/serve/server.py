@@ -427,11 +427,7 @@ class _Heads:
         self.left = MOST_HEAD_BYTES
 
     def readline(self, size: int = -1, /) -> bytes:
-        """A line of a head.
-
-        Raises:
-            LineTooLong: the head is longer than it may be.
-        """
+        """A line of a head. Raises LineTooLong: the head is longer than it may be."""
         line = self._file.readline(min(size, self.left + 1) if size >= 0 else self.left + 1)
         self.left -= len(line)
         if self.left < 0:

@@ -120,11 +120,7 @@ class PeopleStudy:
             return made
 
     def seat(self, secret: str) -> StudySeat:
-        """The person in a seat.
-
-        Raises:
-            UserError: the seat is empty, e.g. because the server was restarted.
-        """
+        """The person in a seat. Raises UserError: the seat is empty, e.g. because the server was restarted."""
         with self._lock:
             if secret not in self._seats:
                 raise UserError("this session is over; choose your code name again")
@@ -132,11 +128,7 @@ class PeopleStudy:
             return self._seats[secret]
 
     def turn(self, secret: str) -> Json:
-        """A person's next task; the verdicts once everything is done.
-
-        Raises:
-            UserError: the seat is empty.
-        """
+        """A person's next task; the verdicts once everything is done. Raises UserError: the seat is empty."""
         person = self.seat(secret).person
         with self._lock:
             order = self._orders[person]
@@ -303,11 +295,7 @@ PARTS = ("goal", "clean", "safe", "in_time", "declared")
 
 
 def _read(path: Path) -> list[Json]:
-    """The whole lines of a log.
-
-    Raises:
-        UserError: another line cannot be read.
-    """
+    """The whole lines of a log. Raises UserError: another line cannot be read."""
     if not path.is_file():
         return []
     try:

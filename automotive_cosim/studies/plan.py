@@ -81,11 +81,7 @@ def driven_at(
 
 
 def check_edges(incident: Incident, place: str, scenario: Scenario) -> None:
-    """Checks that an incident is on edges that the network has.
-
-    Raises:
-        UserError: one is missing.
-    """
+    """Checks that an incident is on edges that the network has. Raises UserError: one is missing."""
     edges = network_of(scenario).edges
     for name in ("edge", "edges", "from_edge", "to_edge"):
         value = getattr(incident, name, ())
@@ -108,11 +104,7 @@ def plan_of(plan: type[P], values: Mapping[str, Any]) -> P:
 
 
 def check_values(plan: TrafficSettings) -> None:
-    """Checks the values of a plan one by one.
-
-    Raises:
-        UserError: one is not valid; the message names the option.
-    """
+    """Checks the values of a plan one by one. Raises UserError: one is not valid; the message names the option."""
     _checked(type(plan), asdict(plan))
     for name in plan.sets:
         values = getattr(plan, name)

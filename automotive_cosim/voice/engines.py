@@ -147,11 +147,7 @@ def as_wav(sound: Sound) -> bytes:
 
 
 def from_wav(data: bytes, name: str) -> Sound:
-    """The sound of a WAV file of 16 bits, at the recogniser's rate.
-
-    Raises:
-        UserError: it is none.
-    """
+    """The sound of a WAV file of 16 bits, at the recogniser's rate. Raises UserError: it is none."""
     try:
         with wave.open(io.BytesIO(data)) as file:
             width, channels, rate = file.getsampwidth(), file.getnchannels(), file.getframerate()

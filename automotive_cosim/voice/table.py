@@ -97,11 +97,7 @@ def check(texts: Iterable[str]) -> None:
 
 
 def recognise(texts: Sequence[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Says the texts and recognises each at every level.
-
-    Raises:
-        SetupError: the extra is missing.
-    """
+    """Says the texts and recognises each at every level. Raises SetupError: the extra is missing."""
     for text, sound in zip(texts, engines.said(texts), strict=True):
         yield text, tuple(engines.recognised(engines.in_cabin(sound, level, text)) for level in LEVELS_DB)
 
@@ -118,11 +114,7 @@ def word_errors(said: str, made_out: str) -> tuple[int, int]:
 
 
 def read(path: Path = TABLE) -> Mapping[str, tuple[str, ...]]:
-    """A table, by text; empty if there is none.
-
-    Raises:
-        UserError: it is none, or was made for other levels.
-    """
+    """A table, by text; empty if there is none. Raises UserError: it is none, or was made for other levels."""
     if not path.is_file():
         return {}
     try:

@@ -51,19 +51,11 @@ class CongestionPlan(CongestionSettings):
 
     @property
     def opened(self) -> Scenario:
-        """The scenario before the study's changes.
-
-        Raises:
-            ScenarioError: it cannot be read.
-        """
+        """The scenario before the study's changes. Raises ScenarioError: it cannot be read."""
         return opened(self.scenario)
 
     def scene(self) -> Scenario:
-        """The scenario as it is driven, without a measure.
-
-        Raises:
-            ScenarioError: it cannot be read.
-        """
+        """The scenario as it is driven, without a measure. Raises ScenarioError: it cannot be read."""
         incidents: list[AnyIncident] = [read_line(text, KINDS, place) for text, place in self._incidents]
         scenario = driven_at(
             self.opened,

@@ -56,11 +56,7 @@ class ExplainedDecision:
 
 
 def write_decisions(study: Study) -> Path:
-    """Writes the page into the study's folder; returns its path.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Writes the page into the study's folder; returns its path. Raises OSError: it cannot be written."""
     page = study.folder / "decisions.html"
     found = list(explained(study))
     write_whole(

@@ -58,11 +58,7 @@ class StudyPlan(RerouteSettings):
             scenario.trip(name)
 
     def scene(self, share: float) -> Scenario:
-        """The scenario with that share of rerouting cars.
-
-        Raises:
-            ScenarioError: it cannot be read.
-        """
+        """The scenario with that share of rerouting cars. Raises ScenarioError: it cannot be read."""
         return driven_at(
             self.opened,
             step_s=self.driven_step_s(self.opened),
