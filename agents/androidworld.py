@@ -53,12 +53,10 @@ class Bounds:
 
     @property
     def width(self) -> int:
-        """Size in pixels."""
         return self.x_max - self.x_min
 
     @property
     def height(self) -> int:
-        """Size in pixels."""
         return self.y_max - self.y_min
 
     @property
@@ -165,7 +163,6 @@ class _Environment:
         return AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
 
     def reset(self, go_home: bool = False) -> AndroidWorldState:
-        """The current screen; nothing is reset."""
         return self.get_state()
 
     def execute_action(self, action: Any) -> None:
@@ -190,7 +187,6 @@ class _Environment:
         self.wait()
 
     def elements(self) -> Sequence[Element]:
-        """The elements on the screen now."""
         return self.now().elements or ()
 
     def hide_automation_ui(self) -> None:

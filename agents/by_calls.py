@@ -149,7 +149,6 @@ class OracleByCalls:
         self._player: CallPlayer | None = None
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._branch = self._player = None
 
     def brief(

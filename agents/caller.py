@@ -69,7 +69,6 @@ class Caller:
 
     @property
     def model(self) -> str:
-        """The model's name."""
         return self._asking.chat_model.name
 
     @property
@@ -78,7 +77,6 @@ class Caller:
         return self._profile.channels
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._asking.reset()
         self._wish = ChatMessage("user", "")
         self._told: list[tuple[ChatMessage, list[ChatMessage]]] = []

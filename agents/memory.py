@@ -60,7 +60,6 @@ class Strategy:
         )
 
     def as_json(self) -> Json:
-        """The strategy as a JSON object."""
         return asdict(self)
 
 

@@ -72,12 +72,10 @@ class ModelAgent:
 
     @property
     def name(self) -> str:
-        """The profile's name."""
         return self._profile.name
 
     @property
     def model(self) -> str:
-        """The model's name."""
         return self._asking.chat_model.name
 
     @property

@@ -67,7 +67,6 @@ class Oracle:
         self._drawn: Callable[[], Sequence[Element]] = tuple[Element, ...]
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._moves.clear()
         self._pressed = 0
         self._lists_seen.clear()

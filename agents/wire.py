@@ -36,7 +36,6 @@ class Wire:
     """One end of a connection."""
 
     def __init__(self, connection: socket.socket) -> None:
-        """Takes ownership of the socket."""
         self._socket = connection
 
     def send_object(self, message: object, within_s: float | None = None) -> None:

@@ -56,7 +56,6 @@ class NativeAgent:
         self.reset("")
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._asking.reset()
         self._history: list[str] = []
         self._left: deque[tuple[Action, GuiCall]] = deque()

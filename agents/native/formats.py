@@ -101,7 +101,6 @@ class Format:
         return ", ".join(name for name in told if name in (CAR, "status") or self.verbs[name].may_decline)
 
     def as_json(self) -> Json:
-        """What is listed of it."""
         words = [asdict(each) | {"verbs": [*each.verbs]} for each in self.words]
         told = {"models": self.models, "coordinates": self.grid.told, "declines_with": self.declines}
         return told | {"lacks": [*self.lacks], "words": words}

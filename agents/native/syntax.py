@@ -32,9 +32,7 @@ class Syntax(Protocol):
         """The calls in an answer, in order. Raises ActionError: it has none."""
         ...
 
-    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """An answer with these calls."""
-        ...
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str: ...
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
         """The calls that a model may make, for its prompt; the picture has the coordinates 0 to width, height."""

@@ -108,7 +108,6 @@ class ProgressView(Generic[R]):
             self._bar.stop()
 
     def tell(self, progress: Progress[R]) -> None:
-        """Shows the current progress."""
         progress, overdue = self._overdue(progress)
         time_told = time_left(progress) or self._time_so_far(progress)
         told = ", ".join(filter(None, (self._words(progress), time_told, progress.budget)))

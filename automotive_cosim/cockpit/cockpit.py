@@ -115,7 +115,6 @@ class Display:
         return self._scale
 
     def elements(self, screen: Screen) -> tuple[Element, ...]:
-        """The accessibility tree as a list."""
         if self._listed is None or self._listed[0] is not screen:
             self._listed = screen, accessibility.elements(screen, self.scale)
         return self._listed[1]
@@ -510,11 +509,9 @@ class Cockpit:
         return Feedback(FeedbackCode.NO_SUCH_ELEMENT, why)
 
     def home(self) -> Feedback:
-        """Goes to the home screen."""
         return self.open_app("home")
 
     def back(self) -> Feedback:
-        """Goes back one screen."""
         return self._perform(Back())
 
     def open_app(self, name: str) -> Feedback:
@@ -625,7 +622,6 @@ class Cockpit:
 
     @property
     def signals(self) -> Signals:
-        """The vehicle's signals."""
         return self._state.signals
 
     @property
@@ -639,7 +635,6 @@ class Cockpit:
         return self._screen
 
     def elements(self) -> tuple[Element, ...]:
-        """The accessibility tree as a list."""
         return self._display.elements(self._screen)
 
     def drawn(self) -> tuple[Element, ...]:

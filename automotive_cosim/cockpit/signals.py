@@ -528,7 +528,6 @@ class Signals:
         return dict(zip(ACTUATORS, _actuators(self._values), strict=True))
 
     def reset(self) -> None:
-        """Resets all to their defaults."""
         self._values = {path: signal.default for path, signal in CATALOGUE.items()}
 
     def copy(self) -> "Signals":

@@ -119,7 +119,6 @@ class Assessor(AgentExecutor):
         return self._stops.keys()
 
     def close(self) -> None:
-        """Ends every assessment."""
         for stop in self._stops.values():
             stop.set()
 

@@ -151,7 +151,6 @@ class GeoContext:
 
     @cached_property
     def country(self) -> str:
-        """ISO 3166-1 code; empty if unknown."""
         return self.place.country
 
     @cached_property

@@ -69,7 +69,6 @@ class ModelReply:
     tokens_cached: int = 0
 
     def as_json(self) -> Json:
-        """The reply as a JSON object."""
         return asdict(self)
 
     @property
@@ -91,9 +90,7 @@ class ChatModel(Protocol):
     """A model that answers a conversation."""
 
     @property
-    def name(self) -> str:
-        """The name written into results."""
-        ...
+    def name(self) -> str: ...
 
     @property
     def sees_pictures(self) -> bool:

@@ -102,7 +102,6 @@ class Zone(NamedTuple):
 
     @property
     def country(self) -> str:
-        """ISO 3166-1 code."""
         return self.place[:2]
 
     @property

@@ -94,7 +94,6 @@ class _Answered(Player):
         return self._agent.stages if isinstance(self._agent, Thinker) else ()
 
     def reset(self, goal: str) -> None:
-        """Resets the agent."""
         self._agent.reset(goal)
 
     def act(self, observation: Observation) -> Action:

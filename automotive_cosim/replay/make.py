@@ -56,7 +56,6 @@ class _Tells:
     name, sees_pictures = "tells", True
 
     def __init__(self, bodies: Iterator[Json] | None, api: ProviderApi) -> None:
-        """Without bodies, the stand-in answers."""
         self._bodies, self._api = bodies, api
         self.answers: list[Json] = []
 

@@ -27,7 +27,6 @@ class ForkServer:
     """Agents' processes, one at a time. A worker has one; closing it ends them all."""
 
     def __init__(self) -> None:
-        """Starts nothing before the first agent."""
         self._popen: subprocess.Popen[bytes] | None = None
         self._wire: Wire | None = None
         self._known: frozenset[int] = frozenset()
@@ -57,7 +56,6 @@ class ForkServer:
         return ""
 
     def close(self) -> None:
-        """Ends everything; may be called again."""
         if self._wire is None or self._popen is None:
             return
         for pid in tree(self._popen.pid):

@@ -68,7 +68,6 @@ class Figures:
     """What each additional environment on the same scenario adds."""
 
     def as_json(self) -> Json:
-        """The figures as a JSON object."""
         return asdict(self)
 
 

@@ -124,7 +124,6 @@ class Recorder(TrialObserver):
 
     @property
     def has_begun(self) -> bool:
-        """Whether the folder has been created."""
         return self._lines is not None
 
     def begun(self, session: JudgedSession, shot: Shot) -> None:
@@ -136,7 +135,6 @@ class Recorder(TrialObserver):
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
-        """Adds a step."""
         self._thoughts.append({"thought": shot.thought, "stages": [stage.as_json() for stage in shot.stages]})
         self._add(shot)
 
@@ -171,7 +169,6 @@ class Recorder(TrialObserver):
             self._lines.close()
 
     def discard(self) -> None:
-        """Removes the folder."""
         self.close()
         if self.folder is not None:
             with suppress(OSError):

@@ -231,7 +231,6 @@ class Player:
         """Does nothing."""
 
     def act(self, observation: Observation) -> Action:
-        """The next recorded action."""
         step = self.turn()
         if step["action"] is None:
             raise ActionError(step["feedback"]["text"])

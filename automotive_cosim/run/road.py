@@ -66,7 +66,6 @@ class SeenColumns:
     """
 
     def __init__(self) -> None:
-        """Before the first second."""
         self._before: dict[int, tuple[int, int, int, int, int]] = {}
 
     def packed(self, rows: Sequence[SeenRow]) -> list[list[int]]:

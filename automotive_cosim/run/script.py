@@ -23,11 +23,9 @@ class ScriptedAgent:
         self._left: deque[Action] = deque()
 
     def reset(self, goal: str) -> None:
-        """Starts over from the first action."""
         self._left = deque(self._actions)
 
     def act(self, observation: Observation) -> Action:
-        """The next action of the file."""
         return self._left.popleft() if self._left else Action(ActionType.WAIT, seconds=1)
 
 

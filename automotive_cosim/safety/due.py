@@ -109,7 +109,6 @@ class DueScreen:
     """What cannot come about where."""
 
     def __post_init__(self) -> None:
-        """Reads what is known."""
         path = self.folder / DUE
         try:
             found = read_json(path) if path.is_file() else {}

@@ -132,7 +132,6 @@ class ClimbSampler:
     """Spreads points evenly, then takes steps from the worst ones: one factor or two at a time."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
-        """Lays out its first points."""
         even = max(min(budget, LEAST_EVEN), round(SHARE * min(budget, 64)))
         self._space, self._rng, self._even = space, rng, EvenSampler(space, even, rng)
         self._left = even
@@ -204,7 +203,6 @@ class CmaSampler:
         return self._space.at(units), False
 
     def tell(self, point: SearchPoint, margin: float) -> None:
-        """Adapts the distribution after each generation."""
         self._known.append((margin, self._space.units(point)))
         if self._asked:
             self._told.append((self._asked[len(self._told)], margin))
@@ -244,7 +242,6 @@ class BayesSampler:
         return point, self._trial.number < self._random
 
     def tell(self, point: SearchPoint, margin: float) -> None:
-        """Adds the result to the study."""
         self._study.tell(self._trial, margin)
 
 

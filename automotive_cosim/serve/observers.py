@@ -37,7 +37,6 @@ class StudyObservers:
             self._marked[path] = file, timer
 
     def close(self) -> None:
-        """Releases all locks."""
         for path in list(self._marked):
             self._leave(path)
 

@@ -96,7 +96,6 @@ class PlayedRows(ABC, Generic[R]):
         """The smallest plan that has these rows, which are all that were meant to be run."""
 
     def close(self) -> None:
-        """Lets another process write."""
         with self._lock:
             self._ends.close()
             self._store = None

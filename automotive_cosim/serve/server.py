@@ -448,7 +448,6 @@ class _RequestHandler(BaseHTTPRequestHandler):
     """A body does not wait until the browser has acknowledged the headers."""
 
     def setup(self) -> None:
-        """Reads heads up to their longest."""
         super().setup()
         self.rfile = _Heads(self.rfile)  # type: ignore[assignment, arg-type]
 
@@ -473,7 +472,6 @@ class _RequestHandler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.OK, self._web.site.answer(path, query, visitor))
 
     def do_HEAD(self) -> None:
-        """The same without a body."""
         self.do_GET()
 
     def do_POST(self) -> None:

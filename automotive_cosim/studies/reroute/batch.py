@@ -79,7 +79,6 @@ class _Warm:
             raise
 
     def close(self) -> None:
-        """Ends the simulation."""
         if self._simulation is not None:
             self._simulation.close()
         self._simulation = self._key = None
