@@ -53,10 +53,12 @@ class Bounds:
 
     @property
     def width(self) -> int:
+        """Size in pixels."""
         return self.x_max - self.x_min
 
     @property
     def height(self) -> int:
+        """Size in pixels."""
         return self.y_max - self.y_min
 
     @property

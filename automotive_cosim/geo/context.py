@@ -151,6 +151,7 @@ class GeoContext:
 
     @cached_property
     def country(self) -> str:
+        """ISO 3166-1 code; empty if unknown."""
         return self.place.country
 
     @cached_property

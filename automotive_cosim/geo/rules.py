@@ -97,6 +97,7 @@ class Rule:
 
     @property
     def country(self) -> str:
+        """ISO 3166-1 code."""
         return self.id[:2]
 
     @cached_property

@@ -102,6 +102,7 @@ class Zone(NamedTuple):
 
     @property
     def country(self) -> str:
+        """ISO 3166-1 code."""
         return self.place[:2]
 
     @property
