@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.actions import point
 from automotive_cosim.cockpit.app import Where
-from automotive_cosim.cockpit.cockpit import OPPOSITE
 from automotive_cosim.cockpit.registry import apps_in
+from automotive_cosim.cockpit.touchscreen import OPPOSITE
 from automotive_cosim.contracts import (
     Action,
     ActionType,
