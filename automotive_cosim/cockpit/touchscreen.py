@@ -50,7 +50,7 @@ class Touchscreen:
     _display: Display
     _tree: Screen | None
 
-    def fit(self, size: ScreenSize, make: Make | None = None) -> None:
+    def resize(self, size: ScreenSize, make: Make | None = None) -> None:
         """Takes a display of this size, and of a make if one is given, unless it has that already."""
         if size is not self._state.size:
             self._state.size, self._tree = size, None

@@ -427,7 +427,7 @@ def beginning(
     noise_db = level_db(first) if is_by_ear else None
     (wish,) = reaching((goal,), setup, noise_db)
     make = setup.conditions.make
-    world.cockpit.fit(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
+    world.cockpit.resize(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, TOLD_HEARD if is_by_ear else "")
     elements, observation = _seen(

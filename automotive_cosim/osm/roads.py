@@ -16,8 +16,8 @@ from automotive_cosim.osm.access import ENDS
 from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, OsmWay
-from automotive_cosim.osm.limits import Stated, built_up_of, conditional_of, kmh_of, stated_limits
 from automotive_cosim.osm.oneway import Directions, at_hours, directions
+from automotive_cosim.osm.speed_limits import Stated, built_up_of, conditional_of, kmh_of, stated_limits
 from automotive_cosim.osm.towns import is_dense, town_cells
 from automotive_cosim.traffic.network import TIMED_ACCESS
 

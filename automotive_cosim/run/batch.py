@@ -211,16 +211,16 @@ class _Place(Generic[J, R]):
         self.warm_up_s, self.is_warming = None, False
         self.worker.give(job)
 
-    def note_stage(self) -> None:
+    def note_phase(self) -> None:
         """Takes note of how far the worker is."""
-        was_warming, self.is_warming = self.is_warming, self.worker.stage.is_warm_up
+        was_warming, self.is_warming = self.is_warming, self.worker.phase.is_warm_up
         if was_warming and not self.is_warming:
             self.warm_up_s = time.monotonic() - self.since_s
 
     def turn(self, job: J) -> JobTurn:
         """How long it has worked on its job, and how far it is."""
         seconds = time.monotonic() - self.since_s
-        return JobTurn(job, self.is_cold, seconds, self.warm_up_s, self.is_warming, self.worker.stage.share)
+        return JobTurn(job, self.is_cold, seconds, self.warm_up_s, self.is_warming, self.worker.phase.share)
 
 
 @dataclass(slots=True)
@@ -318,7 +318,7 @@ class _Batch(Generic[J, R]):
             budget="" if spent is None else spent.left_of(self._budget),
             ended=self._newest,
             stopped=self._stopped,
-            doing=tuple(dict.fromkeys(place.worker.stage.words for place in self._places if place.job)),
+            doing=tuple(dict.fromkeys(place.worker.phase.words for place in self._places if place.job)),
         )
 
     def _expected_s(self, spent: Spent | None) -> float | None:
@@ -370,7 +370,7 @@ class _Batch(Generic[J, R]):
         if answer is None:
             self._stillborn = 0
             if place.job is not None:
-                place.note_stage()
+                place.note_phase()
                 self._tell(replace(self.progress, ended=None))
         elif place.job is not None:
             self._turn_over(place, place.job, answer)

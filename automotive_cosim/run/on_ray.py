@@ -19,8 +19,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
 from automotive_cosim.run.budget import Meter, MeterHandle, Spent
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
+from automotive_cosim.run.phase import JobPhase
 from automotive_cosim.run.settings import Budget
-from automotive_cosim.run.stage import JobStage
 from automotive_cosim.run.store import keep_files, stamp
 from automotive_cosim.tasking.own_files import VARIABLE
 
@@ -163,7 +163,7 @@ class _Actor(Generic[J, R]):
         self._actor = _ACTOR.remote(opener)
         self._asked = self._actor.stamp.remote()
         self.is_ready = False
-        self.stage = JobStage()  # an actor answers only when its job has ended
+        self.phase = JobPhase()  # an actor answers only when its job has ended
 
     @property
     def handles(self) -> Sequence[Any]:

@@ -14,10 +14,10 @@ from automotive_cosim.run.executor import Runner, failed_by
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
+from automotive_cosim.run.phase import PhaseObserver
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.stage import StageObserver
 from automotive_cosim.run.trial import Limits, TrialSetup, run_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
@@ -69,7 +69,7 @@ def run_with(
         OSError: trace or pictures cannot be written.
     """
     kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
-    recorder, everyone = Recorder(job, kept), [*observers, StageObserver()]
+    recorder, everyone = Recorder(job, kept), [*observers, PhaseObserver()]
     try:
         with ExitStack() as ends:
             everyone.insert(-1, ends.enter_context(closing(recorder)))

@@ -112,7 +112,9 @@ def test_a_shelf_shows_what_there_is_of_any_part_of_any_screen(network: RoadNetw
         ("media", "media"),
     ):
         place = OwnScreen(("a", "b", "c", "d"), "SEAT", shelves=(Shelf(of, ((control,),)),))
-        cockpit.fit(ScreenSize.STANDARD, Make(BarOfMake(entries=("home", "apps", "own")), screens={"own": place}))
+        cockpit.resize(
+            ScreenSize.STANDARD, Make(BarOfMake(entries=("home", "apps", "own")), screens={"own": place})
+        )
         assert cockpit.visit("own").code is FeedbackCode.OK
         shown = {key_of(one.resource_id) for one in cockpit.elements()}
         assert any(f"{key}.".startswith(f"{control}.") for key in shown) is (of in ("seats", "media")), control

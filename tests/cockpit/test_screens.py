@@ -452,7 +452,7 @@ def test_a_screen_of_any_size_has_its_pixels(network: RoadNetwork, around: Surro
     cockpit = Cockpit(network, rng=np.random.default_rng(1))
     cockpit.sense(around, 0.0)
     cockpit.screenshot()
-    cockpit.fit(size)
+    cockpit.resize(size)
     assert cockpit.screenshot().shape == (size.height, size.width, 3)
     assert press(cockpit, "dock.climate") is FeedbackCode.OK
     repainted = cockpit.screenshot()

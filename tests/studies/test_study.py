@@ -35,7 +35,6 @@ from automotive_cosim.studies.reroute.batch import REROUTE
 from automotive_cosim.studies.reroute.data import futures
 from automotive_cosim.studies.reroute.decisions import attributed
 from automotive_cosim.studies.reroute.demand import read_demand
-from automotive_cosim.studies.reroute.drive import NO_ROOM
 from automotive_cosim.studies.reroute.effects import effects
 from automotive_cosim.studies.reroute.live import LiveDrive
 from automotive_cosim.studies.reroute.page import write_study
@@ -46,6 +45,7 @@ from automotive_cosim.studies.reroute.rows import NOTHING, TripRow
 from automotive_cosim.studies.reroute.tables import policies as policy_table
 from automotive_cosim.studies.reroute.tables import tables
 from automotive_cosim.studies.reroute.tracks import TRACKS
+from automotive_cosim.studies.reroute.trip import NO_ROOM
 from automotive_cosim.studies.reroute.warnings import steps_told
 
 from .conftest import EDGES, MORE_TRIPS, Draw

@@ -42,7 +42,7 @@ class RoadSpot:
     lane: int = 0
 
 
-class RoadPlaces:
+class RoadPositions:
     """A network's lanes for cars, and the roads of the OpenDRIVE file that it is of."""
 
     def __init__(self, net: Any, road: Path | None) -> None:
@@ -292,14 +292,14 @@ class RoadPlaces:
 
 
 _SPOTS = {
-    "LanePosition": RoadPlaces._on_lane,
-    "RelativeLanePosition": RoadPlaces._lanes_from_other,
-    "RelativeObjectPosition": RoadPlaces._from_other,
-    "RelativeRoadPosition": RoadPlaces._beside_other,
-    "RelativeWorldPosition": RoadPlaces._from_other,
-    "RoadPosition": RoadPlaces._on_road,
-    "RoutePosition": RoadPlaces._on_route,
-    "WorldPosition": RoadPlaces._world,
+    "LanePosition": RoadPositions._on_lane,
+    "RelativeLanePosition": RoadPositions._lanes_from_other,
+    "RelativeObjectPosition": RoadPositions._from_other,
+    "RelativeRoadPosition": RoadPositions._beside_other,
+    "RelativeWorldPosition": RoadPositions._from_other,
+    "RoadPosition": RoadPositions._on_road,
+    "RoutePosition": RoadPositions._on_route,
+    "WorldPosition": RoadPositions._world,
 }
 
 
