@@ -47,7 +47,7 @@ from automotive_cosim.studies.calls.town import CarTrip
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.plan import SeedJob, check_edges, check_values, driven_at, opened
 from automotive_cosim.studies.reroute.plan import named
-from automotive_cosim.studies.reroute.policies import AGENT, HouseRule, Policy, parse_policy
+from automotive_cosim.studies.reroute.policies import AGENT, Policy, PolicyRule, parse_policy
 from automotive_cosim.studies.settings import AdoptionSettings
 from automotive_cosim.traffic.fork import Forked, RemoteRoad, RemoteTraffic
 from automotive_cosim.traffic.profiles import profile
@@ -60,7 +60,7 @@ SAME_HAZARD_S = 60.0
 T = TypeVar("T")
 HANGS_S = 120.0
 """Wall time after which a class of the user's is taken to hang, and its car drives on without it."""
-BY_NEWS = frozenset((HouseRule.NEVER, HouseRule.ALWAYS, HouseRule.DELAY, HouseRule.WORTHWHILE, HouseRule.SUMO))
+BY_NEWS = frozenset((PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.DELAY, PolicyRule.WORTHWHILE, PolicyRule.SUMO))
 """Rules that need nothing but what a car can know."""
 
 
@@ -93,7 +93,7 @@ class AdoptionPlan(AdoptionSettings):
         check_values(self)
         profile(self.driver)
         rule = self.policy
-        if rule.rule is HouseRule.AGENT:
+        if rule.rule is PolicyRule.AGENT:
             _ = own_assistant(rule.agent, self.seeds[0]) or agent_of(rule.agent)
         elif rule.rule not in BY_NEWS:
             raise UserError(f"--agent {self.agent} is no assistant: it knows what no car does; name another")
@@ -103,7 +103,7 @@ class AdoptionPlan(AdoptionSettings):
     @property
     def policy(self) -> Policy:
         """The rule or the agent."""
-        is_rule = self.agent.partition(":")[0] in set(HouseRule)
+        is_rule = self.agent.partition(":")[0] in set(PolicyRule)
         return parse_policy(self.agent if is_rule else AGENT + self.agent)
 
     @property
@@ -355,7 +355,7 @@ class _Drive:
         self._end_s = road.time_s + 60 * self._plan.minutes
         while road.time_s < self._end_s - road.step_s / 2:
             for car in road.entered():
-                if self._policy.rule is HouseRule.AGENT and self._own is None:
+                if self._policy.rule is PolicyRule.AGENT and self._own is None:
                     fleet.begin(car.car, self._agent(car), partial(_now_s, car))
                 else:
                     fleet.begin(car.car, self._advised(car), lambda: road.time_s)
@@ -395,7 +395,7 @@ class _Drive:
         rng = np.random.default_rng((self._job.seed, *name.encode()))
         follows = profile(self._plan.driver).compliance
         is_due, is_steered = self._own is not None, False
-        while (self._own or self._policy.rule is not HouseRule.NEVER) and car.state.end is None:
+        while (self._own or self._policy.rule is not PolicyRule.NEVER) and car.state.end is None:
             if not is_due and is_steered:
                 for _ in range(round(every_s)):
                     yield 1.0
@@ -432,7 +432,7 @@ class _Drive:
 
     def _advice(self, car: RemoteTraffic) -> Reroute | SlowDown | None:
         """What a rule or the user's assistant asks for."""
-        if self._own is None and self._policy.rule is HouseRule.SUMO:
+        if self._own is None and self._policy.rule is PolicyRule.SUMO:
             edges = self._road.call(town.way_of_device, car.car)
             return Reroute(edges=edges) if edges else None
         if (own := self._own) is not None:

@@ -16,7 +16,7 @@ from automotive_cosim.studies.calls.ledger import keep_ledger, run_on
 from automotive_cosim.studies.gridlock import MEASURED_EVERY_S
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.reroute.plan import StudyJob, StudyPlan
-from automotive_cosim.studies.reroute.policies import HouseRule
+from automotive_cosim.studies.reroute.policies import PolicyRule
 from automotive_cosim.studies.reroute.results import choices
 from automotive_cosim.studies.reroute.rows import TripRow
 from automotive_cosim.studies.reroute.tracks import TRACKS
@@ -46,7 +46,7 @@ def _counts(plan: StudyPlan) -> Iterator[int]:
 
 def _is_narrow(plan: StudyPlan, rows: Sequence[TripRow]) -> bool:
     """Whether the mean gain of ``always`` is known precisely enough."""
-    always = choices(rows, (HouseRule.ALWAYS,), plan.compliance[0])
+    always = choices(rows, (PolicyRule.ALWAYS,), plan.compliance[0])
     found = [each for each in always if each.age_s == plan.ages_s[0]]
     mean = seed_mean((each.seed, each.gain.time_s) for each in found)
     if plan.half_width_s is None or mean is None or mean.interval is None:

@@ -17,7 +17,7 @@ from automotive_cosim.studies.reroute.data import write_data
 from automotive_cosim.studies.reroute.decisions import write_decisions
 from automotive_cosim.studies.reroute.demand import demand_table, read_demand
 from automotive_cosim.studies.reroute.effects import effects
-from automotive_cosim.studies.reroute.policies import HouseRule, parse_policy
+from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.reroute.results import Study
 from automotive_cosim.studies.reroute.rows import PolicyChoice
 from automotive_cosim.studies.reroute.tables import STAYING, groups, tables, time_saved_s
@@ -85,7 +85,7 @@ def answer(study: Study) -> str:
     never = ", ".join(f"“{each}”" for each in idle) + " rerouted nowhere"
     if not found:
         return f"{never}." if idle else "No decision to reroute was compared."
-    followed = {each: shares for each, shares in found.items() if parse_policy(each).rule is not HouseRule.BEST}
+    followed = {each: shares for each, shares in found.items() if parse_policy(each).rule is not PolicyRule.BEST}
     policy, shares = max((followed or found).items(), key=lambda each: fmean(gain.value for _, gain, _ in each[1]))
     gains = [gain for _, gain, _ in shares]
     told = " and ".join(

@@ -13,7 +13,7 @@ DELAY = "delay:"
 WORTHWHILE = "worthwhile:"
 
 
-class HouseRule(StrEnum):
+class PolicyRule(StrEnum):
     """How a policy decides."""
 
     NEVER = "never"
@@ -37,7 +37,7 @@ class Policy:
 
     text: str
     """Its name as given."""
-    rule: HouseRule
+    rule: PolicyRule
     delay_s: float = 0.0
     factor: float = 1.0
     """How many times as long the present route must take at least."""
@@ -49,15 +49,15 @@ class Policy:
     def words(self) -> str:
         """What it does, for legends."""
         match self.rule:
-            case HouseRule.DELAY:
+            case PolicyRule.DELAY:
                 return f"from {self.delay_s:g} s of delay on"
-            case HouseRule.WORTHWHILE:
+            case PolicyRule.WORTHWHILE:
                 return f"if {self.factor:g} times and {self.gain_s:g} s quicker"
-            case HouseRule.SUMO:
+            case PolicyRule.SUMO:
                 return "SUMO's device"
-            case HouseRule.BEST:
+            case PolicyRule.BEST:
                 return "best, in hindsight"
-            case HouseRule.AGENT:
+            case PolicyRule.AGENT:
                 return f"agent {self.agent}"
         return self.text
 
@@ -69,11 +69,11 @@ class Policy:
             delay_s: how much more of it than on empty roads.
             offered_s: expected travel time on the quickest other route; None without one.
         """
-        if self.rule is HouseRule.ALWAYS:
+        if self.rule is PolicyRule.ALWAYS:
             return True
         if stay_s is None or offered_s is None or offered_s >= stay_s:
             return False
-        if self.rule is HouseRule.DELAY:
+        if self.rule is PolicyRule.DELAY:
             return delay_s >= self.delay_s
         return stay_s >= self.factor * offered_s and stay_s - offered_s >= self.gain_s
 
@@ -85,7 +85,7 @@ def parse_policy(text: str) -> Policy:
         UserError: it is none of them.
     """
     if text.startswith(AGENT) and text != AGENT:
-        return Policy(text, HouseRule.AGENT, agent=text.removeprefix(AGENT))
+        return Policy(text, PolicyRule.AGENT, agent=text.removeprefix(AGENT))
     if text.startswith(DELAY):
         try:
             delay_s = float(text.removeprefix(DELAY))
@@ -93,7 +93,7 @@ def parse_policy(text: str) -> Policy:
             delay_s = math.nan
         if not 0 <= delay_s <= 3_600:
             raise UserError(f"policy {text!r} requires seconds of delay from 0 to 3600, as in delay:60")
-        return Policy(text, HouseRule.DELAY, delay_s=delay_s)
+        return Policy(text, PolicyRule.DELAY, delay_s=delay_s)
     if text.startswith(WORTHWHILE):
         try:
             factor, gain_s = map(float, text.removeprefix(WORTHWHILE).split(":"))
@@ -104,11 +104,11 @@ def parse_policy(text: str) -> Policy:
                 f"policy {text!r} requires a factor from 1 to 100 and seconds from 0 to 3600 by which the other "
                 "route is quicker, as in worthwhile:1.2:60"
             )
-        return Policy(text, HouseRule.WORTHWHILE, factor=factor, gain_s=gain_s)
-    if text not in {HouseRule.NEVER, HouseRule.ALWAYS, HouseRule.SUMO, HouseRule.BEST}:
-        known = (HouseRule.NEVER, HouseRule.ALWAYS, HouseRule.SUMO, HouseRule.BEST)
+        return Policy(text, PolicyRule.WORTHWHILE, factor=factor, gain_s=gain_s)
+    if text not in {PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.SUMO, PolicyRule.BEST}:
+        known = (PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.SUMO, PolicyRule.BEST)
         raise UnknownNameError("policy", text, (*known, "delay:60", "worthwhile:1.2:60", "agent:asurada"))
-    return Policy(text, HouseRule(text))
+    return Policy(text, PolicyRule(text))
 
 
 def chosen(policy: Policy, decision: Decision, age_s: float, compliance: float = 1.0) -> int | None:
@@ -123,15 +123,15 @@ def chosen(policy: Policy, decision: Decision, age_s: float, compliance: float =
     """
     news = next(each for each in decision.news if each.age_s == age_s)
     match policy.rule:
-        case HouseRule.NEVER:
+        case PolicyRule.NEVER:
             return None
-        case HouseRule.BEST:
+        case PolicyRule.BEST:
             return best(decision)
-        case HouseRule.AGENT:
+        case PolicyRule.AGENT:
             number: int | None = decision.agents[policy.agent]
-        case HouseRule.SUMO:
+        case PolicyRule.SUMO:
             number = decision.own
-        case HouseRule.ALWAYS | HouseRule.DELAY | HouseRule.WORTHWHILE:
+        case PolicyRule.ALWAYS | PolicyRule.DELAY | PolicyRule.WORTHWHILE:
             leaves = policy.leaves(news.stay_s, news.delay_s, news.offered_s)
             number = news.branch if leaves else None
     return number if decision.complies(compliance) else None
@@ -141,7 +141,7 @@ def drawn_choices(
     policy: Policy, decision: Decision, age_s: float, compliance: float = 1.0
 ) -> tuple[int | None, ...]:
     """What a policy chooses in each draw of the futures: always the same, except for ``best``."""
-    if policy.rule is HouseRule.BEST:
+    if policy.rule is PolicyRule.BEST:
         return hindsight(decision)
     return (chosen(policy, decision, age_s, compliance),) * decision.draws
 

@@ -6,7 +6,7 @@ from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.run.row import JobRow, remedy
 from automotive_cosim.studies.calls.chance import Fresh
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
-from automotive_cosim.studies.reroute.policies import HouseRule, parse_policy
+from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.reroute.results import NOISE, Noise, Study
 from automotive_cosim.studies.reroute.rows import PolicyChoice
 from automotive_cosim.traffic.chance import JITTER
@@ -48,7 +48,7 @@ def groups(study: Study) -> list[tuple[float, str, float, list[PolicyChoice]]]:
 
 def goes_by_news(policy: str) -> bool:
     """Whether a policy decides by the plan's traffic news; others know the present, the future or nothing."""
-    return parse_policy(policy).rule in (HouseRule.ALWAYS, HouseRule.DELAY, HouseRule.WORTHWHILE)
+    return parse_policy(policy).rule in (PolicyRule.ALWAYS, PolicyRule.DELAY, PolicyRule.WORTHWHILE)
 
 
 def policies(study: Study) -> Table:
@@ -250,7 +250,7 @@ def by_compliance(study: Study) -> Table:
 
 def needs_driver(policy: str) -> bool:
     """Whether a policy is advice that the driver may ignore."""
-    return parse_policy(policy).rule not in (HouseRule.NEVER, HouseRule.BEST)
+    return parse_policy(policy).rule not in (PolicyRule.NEVER, PolicyRule.BEST)
 
 
 def by_share(study: Study) -> Table:

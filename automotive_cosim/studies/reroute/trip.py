@@ -29,7 +29,7 @@ from automotive_cosim.studies.reroute.futures import Futures, close_all, ended, 
 from automotive_cosim.studies.reroute.live import LiveDrive
 from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import Diverted, Point, Shut, compared
-from automotive_cosim.studies.reroute.policies import HouseRule, parse_policy
+from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.reroute.rows import Decision, News, TripRow
 from automotive_cosim.studies.reroute.tracks import write_tracks
 from automotive_cosim.studies.reroute.whole import whole_drives
@@ -198,7 +198,7 @@ class _Drive:
         """Runs the branches of a decision; false if there is no decision here."""
         plan, traffic, futures = self.job.plan, self.traffic, self.futures
         news = {age_s: traffic.alternatives(age_s) for age_s in plan.ages_s}
-        own = own_choice_of(traffic) if HouseRule.SUMO in self._rules else now.ahead.route_edges
+        own = own_choice_of(traffic) if PolicyRule.SUMO in self._rules else now.ahead.route_edges
         ways = _ways(now, news, own)
         if not ways and not plan.agents:
             self.looks += 1

@@ -20,7 +20,7 @@ from automotive_cosim.studies.reroute.driver import decided, drive_on
 from automotive_cosim.studies.reroute.futures import ended, own_choice_of
 from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import branched, exclusion
-from automotive_cosim.studies.reroute.policies import HouseRule, Policy, parse_policy
+from automotive_cosim.studies.reroute.policies import Policy, PolicyRule, parse_policy
 from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, WholeDrive
 from automotive_cosim.traffic.chance import SEED_RANGE
 from automotive_cosim.traffic.fork import RemoteTraffic
@@ -39,7 +39,7 @@ def whole_drives(
         history: measurements of the traffic so far.
     """
     policies = [parse_policy(text) for text in job.plan.policies]
-    followed = [each for each in policies if each.rule not in (HouseRule.NEVER, HouseRule.BEST)]
+    followed = [each for each in policies if each.rule not in (PolicyRule.NEVER, PolicyRule.BEST)]
     draws = 1 + job.plan.draws.start
     return tuple(
         drive
@@ -121,7 +121,7 @@ def _follow(job: StudyJob, policy: Policy, compliance: float, traffic: RemoteTra
 
 def _wanted(policy: Policy, traffic: RemoteTraffic, age_s: float) -> tuple[str, ...] | None:
     """The route that a policy takes now; None if there is no other."""
-    if policy.rule is HouseRule.SUMO:
+    if policy.rule is PolicyRule.SUMO:
         return own_choice_of(traffic)
     options = traffic.alternatives(age_s)
     if len(options) < 2:
