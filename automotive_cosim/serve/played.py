@@ -100,7 +100,8 @@ class PlayedRows(ABC, Generic[R]):
             self._ends.close()
             self._store = None
 
-    def _append(self, row: R) -> None:
+    def keep(self, row: R) -> None:
+        """Adds a row. Raises UserError: it cannot be written."""
         with self._lock:
             store = self._opened()
             store.append(row)
@@ -147,10 +148,6 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
             raise UserError(f"task {task!r} has no half {half!r} that runs in {self._scenario or 'any scenario'}")
         return replace(found, repeat=self._first(lambda repeat: replace(found, repeat=repeat).id))
 
-    def keep(self, row: EpisodeRow) -> None:
-        """Adds a row. Raises UserError: it cannot be written."""
-        self._append(row)
-
     def plan_of(self, rows: Sequence[EpisodeRow]) -> Json:
         return people_plan(
             sorted({row.task for row in rows}),
@@ -173,10 +170,6 @@ class PlayedDrives(PlayedRows[DriveTrialRow]):
             return DriveSetup(family, seed, CONDITIONS, agent=HUMAN, model=name, repeat=repeat)
 
         return at(self._first(lambda repeat: at(repeat).id))
-
-    def keep(self, row: DriveTrialRow) -> None:
-        """Adds a drive. Raises UserError: it cannot be written."""
-        self._append(row)
 
     def plan_of(self, rows: Sequence[DriveTrialRow]) -> Json:
         plan = Plan(

@@ -28,10 +28,10 @@ from automotive_cosim.studies.reroute.rows import (
     Decision,
     DecisionLine,
     DecisionPoint,
-    DriveLine,
     OthersTotals,
     PolicyChoice,
     Totals,
+    TripLine,
 )
 
 TYPES = {bool: "boolean", int: "integer", float: "number", str: "string"}
@@ -62,7 +62,7 @@ class FutureRow(DecisionLine):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WholeRow(DriveLine):
+class WholeRow(TripLine):
     """One whole drive under one policy: a line of ``whole_drives.csv``."""
 
     policy: str

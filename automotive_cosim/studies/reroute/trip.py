@@ -26,7 +26,7 @@ from automotive_cosim.studies.calls.ledger import account, others, settle
 from automotive_cosim.studies.reroute.compare import Future
 from automotive_cosim.studies.reroute.driver import decided, drive_on
 from automotive_cosim.studies.reroute.futures import Futures, close_all, ended, own_choice_of
-from automotive_cosim.studies.reroute.live import LiveDrive
+from automotive_cosim.studies.reroute.live import LiveTrip
 from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import Diverted, Point, Shut, compared
 from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy
@@ -84,7 +84,7 @@ def run_drive(
         if job.plan.whole_drives:
             fresh = fresh_of(simulation) if job.plan.draws.stop else None
             row = replace(row, fresh=fresh, whole=whole_drives(job, traffic, fresh, history))
-        live = LiveDrive(job, traffic, study)
+        live = LiveTrip(job, traffic, study)
         with closing(live), closing(_Drive(job, traffic, simulation, live)) as drive:
             drive.go()
             if not drive.points:
@@ -125,7 +125,7 @@ def depart(job: StudyJob, simulation: Forked) -> RemoteTraffic:
 class _Drive:
     """The drive on its own route, up to its last decision."""
 
-    def __init__(self, job: StudyJob, traffic: RemoteTraffic, simulation: Forked, live: LiveDrive) -> None:
+    def __init__(self, job: StudyJob, traffic: RemoteTraffic, simulation: Forked, live: LiveTrip) -> None:
         self.job = job
         self.traffic = traffic
         self._live = live
