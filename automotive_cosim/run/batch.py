@@ -84,6 +84,18 @@ class _BatchPlan(Protocol):
 P = TypeVar("P", bound=_BatchPlan)
 
 
+def kept(
+    plan: _BatchPlan, folder: Path, row: RowKind[R], parts: tuple[str, ...] = ()
+) -> AbstractContextManager[Store[R]]:
+    """Checks a plan and opens its folder, new or to be resumed, whoever runs its jobs: workers or people.
+
+    Raises:
+        UserError: the plan does not fit, or the folder cannot take its results.
+    """
+    plan.check()
+    return opened(folder, plan.as_json(), row, parts, planned=len(plan.jobs()))
+
+
 @dataclass(frozen=True, slots=True)
 class BatchKind(Generic[P, J, R]):
     """A kind of batch: what its workers do, and what comes of it."""
@@ -109,10 +121,8 @@ class BatchKind(Generic[P, J, R]):
         tell: Callable[[Progress[R]], None] = lambda progress: None,
     ) -> Progress[R]:
         """Runs the remaining jobs of a plan; arguments and errors are those of ``run_plan``."""
-        plan.check()
-        planned = len(plan.jobs())
         with (
-            opened(folder, plan.as_json(), self.row, self.parts, planned=planned) as store,
+            kept(plan, folder, self.row, self.parts) as store,
             executor.metered(budget, spent_before(store)) if self.asks_models else nullcontext() as meter,
         ):
             opener = self.opener if meter is None else partial(self.opener, meter)

@@ -24,11 +24,12 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.formats.files import read_whole_lines
+from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.formats.writing import add_line, growing
+from automotive_cosim.run.batch import kept
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.store import opened
-from automotive_cosim.serve.dealing import PeoplePlan, deal
+from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.detection import PHASES, TOLD, detected, figures
 from automotive_cosim.serve.play import Game
 from automotive_cosim.traffic.fork import Simulations
@@ -67,14 +68,12 @@ class PeopleStudy:
         Raises:
             UserError: the plan does not fit, or the folder belongs to something else or is in use.
         """
-        whole = plan.plan
-        jobs = whole.episodes()
         self.name = folder.name
         self.folder = folder
         self._detects = plan.detection
-        self._orders = deal(jobs, plan.people, plan.order_seed)
         self._ends = ExitStack()
-        self._store = self._ends.enter_context(opened(folder, whole.as_json(), EpisodeRow, planned=len(jobs)))
+        self._store = self._ends.enter_context(kept(plan, folder, EpisodeRow, (TRACES, PICTURES)))
+        self._orders = plan.orders()
         self._log = folder / LOG
         self._events = _read(self._log)
         self._own = Simulations() if simulations is None else None
