@@ -144,7 +144,7 @@ def main() -> None:
         terminations.append(number)
         raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
 
-    def swallowed(lost: sys.UnraisableHookArgs) -> None:
+    def swallowed(lost: "sys.UnraisableHookArgs") -> None:
         """A callback, such as a weak reference's, cannot raise: what interrupted it comes once more."""
         if not isinstance(lost.exc_value, KeyboardInterrupt):
             sys.__unraisablehook__(lost)

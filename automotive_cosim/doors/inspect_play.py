@@ -1,5 +1,7 @@
 """What both of Inspect's tasks share: the tool ``act``, and an episode from start to verdict."""
 
+from __future__ import annotations
+
 # pyright: reportMissingImports=false
 import base64
 import json

@@ -7,6 +7,8 @@ it is. Needs the package ``inspect-ai``
 (extra ``harnesses``).
 """
 
+from __future__ import annotations
+
 # pyright: reportMissingImports=false
 import math
 from collections.abc import Callable, Sequence
