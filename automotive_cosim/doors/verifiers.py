@@ -6,8 +6,6 @@ Each rollout gets a server of its own, which drives to the hand-over and then of
 is no ``start``: a model does not choose its task. Needs the package ``verifiers`` (extra ``harnesses``).
 """
 
-from __future__ import annotations
-
 # pyright: reportMissingImports=false
 import asyncio
 from collections.abc import Callable, Iterator

@@ -1,5 +1,7 @@
 """The pages in a real browser: Chromium, without a network. Skipped where Playwright or Chromium is missing."""
 
+from __future__ import annotations
+
 import gzip
 import json
 import os
