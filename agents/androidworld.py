@@ -236,9 +236,7 @@ class AndroidWorldAgent:
     def act(self, observation: Observation) -> Action:
         """Resumes the agent until its next action, or the end of a ``step`` without one.
 
-        Raises:
-            ActionError: it raised, took no action in a step, or took one that does not exist here.
-        """
+        Raises ActionError: it raised, took no action in a step, or took one that does not exist here."""
         if self._env is None:
             self._env = _Environment(_screen_px(observation))
             threading.Thread(target=self._live, args=(self._env,), daemon=True).start()

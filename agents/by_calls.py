@@ -63,9 +63,7 @@ def translated(walk: Episode) -> tuple[TimedCall, ...]:
     Args:
         walk: an episode at its hand-over, which is played by touch and closed.
 
-    Raises:
-        UntranslatableError: no function gives one of its commands.
-    """
+    Raises UntranslatableError: no function gives one of its commands."""
     conditions = replace(walk.setup.conditions, interface=Interface.TOUCH, see=See.BOTH)
     walk.setup = replace(walk.setup, channels=ALL - {Channel.SCREENSHOT}, conditions=conditions)
     oracle, calls = Oracle(), list[TimedCall]()

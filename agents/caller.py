@@ -163,9 +163,7 @@ def heard(reply: ModelReply, schemas: Mapping[str, Json], count: int = 0) -> Cha
     Args:
         schemas: of the parameters, by function.
 
-    Raises:
-        ActionError: it ended within its thoughts.
-    """
+    Raises ActionError: it ended within its thoughts."""
     try:
         told = json.loads(reply.text)
         say, calls = str(told["say"]), [(str(call["name"]), call["arguments"], call) for call in told["calls"]]

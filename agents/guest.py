@@ -77,9 +77,7 @@ class Guest:
 def load(spec: str) -> Agent:
     """An agent of the class ``package.module:Class``, which may be in the working folder.
 
-    Raises:
-        UserError: the module or class does not exist, cannot be instantiated, or lacks something.
-    """
+    Raises UserError: the module or class does not exist, cannot be instantiated, or lacks something."""
     made = own_class(spec, "agent")
     if callable(getattr(made, "step", None)) and not hasattr(made, "act"):
         return AndroidWorldAgent(made)
@@ -115,9 +113,7 @@ def own_class(spec: str, what: str) -> type:
     Args:
         what: it should be, for errors.
 
-    Raises:
-        UserError: there is no such module or class.
-    """
+    Raises UserError: there is no such module or class."""
     module_name, _, class_name = spec.partition(":")
     if not module_name or not class_name:
         raise UserError(f"{what} {spec!r} does not have the form {FORM}")

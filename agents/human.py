@@ -57,9 +57,7 @@ class Human:
     def act(self, observation: Observation) -> Action:
         """The action that the person enters; the end of the input interrupts the run.
 
-        Raises:
-            KeyboardInterrupt: there is no more input.
-        """
+        Raises KeyboardInterrupt: there is no more input."""
         self._show(observation)
         while True:
             self._say("> ", end="")

@@ -55,9 +55,7 @@ class ModelAgent:
         Args:
             settings: what to take away from the profile, the budget, and the memory's file.
 
-        Raises:
-            UserError: the memory's file cannot be used, or the model would see nothing of the screen.
-        """
+        Raises UserError: the memory's file cannot be used, or the model would see nothing of the screen."""
         self._profile = profile.under(settings)
         self._asking = Asking(chat_model, settings)
         is_blind = settings.conditions.see is See.PICTURE and not self._sees

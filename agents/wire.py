@@ -127,9 +127,7 @@ class Wire:
 
 def _json(data: bytes) -> Json:
     """
-    Raises:
-        ValueError: it is no JSON object that could be stored and read again.
-    """
+    Raises ValueError: it is no JSON object that could be stored and read again."""
     if sum(map(data.count, (b"[", b"{", b","))) > MOST_VALUES:
         raise ValueError(f"it may have over {MOST_VALUES:,} values")
     try:

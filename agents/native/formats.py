@@ -108,10 +108,8 @@ class Format:
     def acts(self, text: str, hand: Hand) -> list[tuple[Action, GuiCall]]:
         """The actions of an answer, each with the call that asks for it.
 
-        Raises:
-            ActionError: it cannot be read, has a word that the format does not have, or asks for what the car does
-                not have.
-        """
+        Raises ActionError: it cannot be read, has a word that the format does not have, or asks for what the car
+        does not have."""
         found: list[tuple[Action, GuiCall]] = []
         calls = self.syntax.read(text, self.verbs)
         for call in calls:

@@ -201,9 +201,7 @@ def words(name: str, text: str) -> list[str]:
 def whole_numbers_in(name: str, text: str) -> list[int]:
     """Whole numbers and ranges in the option ``--name``, separated by commas.
 
-    Raises:
-        UserError: the text contains anything else.
-    """
+    Raises UserError: the text contains anything else."""
     found: list[int] = []
     for word in words(name, text):
         first, dash, last = word.partition("-")

@@ -121,9 +121,7 @@ def _readings() -> tuple[CarFunction, ...]:
 def functions() -> Mapping[str, CarFunction]:
     """Every command and reading as a function, by its name: readings, then those of the actuators and of the apps.
 
-    Raises:
-        ValueError: two functions have the same name.
-    """
+    Raises ValueError: two functions have the same name."""
     every = (*_readings(), *of_signals(), *(function for app in apps().values() for function in app.functions))
     names = [function.name for function in every]
     twice = {name for name in names if names.count(name) > 1}

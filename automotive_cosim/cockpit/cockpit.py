@@ -177,9 +177,7 @@ class Cockpit(Touchscreen):
     def expect(self, interruptions: Sequence[Arrival | CarChange]) -> None:
         """Lets calls, messages and changes of the car come, at seconds from now; answers, from what they answer.
 
-        Raises:
-            UserError: one is impossible, or an arrival names nobody.
-        """
+        Raises UserError: one is impossible, or an arrival names nobody."""
         since_s = self._state.time_s - self._state.departed_s
         coming = [
             each if isinstance(each, Arrival) and each.after else replace(each, at_s=since_s + each.at_s)

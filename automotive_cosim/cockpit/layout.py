@@ -39,9 +39,7 @@ def panes(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
     """The parts of a screen, a gap apart: side by side, in a narrow box narrower, or in a box taller than wide one
     above the other, as high as each other.
 
-    Raises:
-        ValueError: they are wider than the box.
-    """
+    Raises ValueError: they are wider than the box."""
     if rect.height > rect.width:
         return rect.rows(len(parts), GAP)
     if rect.width < FULL:

@@ -67,9 +67,7 @@ class Signal(Generic[T]):
     def check(self, value: object) -> T:
         """The value to store; an int becomes a float if floats are expected.
 
-        Raises:
-            SignalError: wrong type, out of range or not among the allowed values.
-        """
+        Raises SignalError: wrong type, out of range or not among the allowed values."""
         if value is None and self.optional:
             return cast(T, None)
         expected = float if self.optional else type(self.default)

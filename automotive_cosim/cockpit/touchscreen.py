@@ -211,9 +211,7 @@ class Touchscreen:
     def visit(self, screen: str) -> Feedback:
         """Shows any screen by its name directly, for pictures and studies.
 
-        Raises:
-            UnknownNameError: no such screen.
-        """
+        Raises UnknownNameError: no such screen."""
         known = {*pages(), *self._state.make.screens}
         if screen not in known:
             raise UnknownNameError("screen", screen, known)

@@ -211,9 +211,7 @@ class Conditions:
     def named(cls, values: Mapping[str, object]) -> Conditions:
         """Conditions by name, with values as words or numbers.
 
-        Raises:
-            UserError: there is no such condition or value.
-        """
+        Raises UserError: there is no such condition or value."""
         return cls(**{name: condition(name).value(value) for name, value in values.items()})
 
     @property

@@ -131,17 +131,13 @@ class Session:
     def think(self, seconds: float) -> None:
         """Lets the time pass that the agent takes to answer; what it then does refers to the screen that it saw.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         driven(self.thinking(seconds))
 
     def step(self, action: Action) -> None:
         """Performs one action, lets its time pass and observes.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         driven(self.stepping(action))
 
     def thinking(self, seconds: float) -> TakesTime[None]:
@@ -468,9 +464,7 @@ def beginning(
 def reaching(said: tuple[str, ...], setup: SessionSetup, noise_db: float | None) -> tuple[str, ...]:
     """What reaches the agent of words that are said in so much noise; None where they are text.
 
-    Raises:
-        InfrastructureError: they have not been recognised yet, and the extra ``voice`` is missing.
-    """
+    Raises InfrastructureError: they have not been recognised yet, and the extra ``voice`` is missing."""
     if noise_db is None:
         return said
     if setup.conditions.hear is Hearing.AUDIO:
@@ -602,9 +596,7 @@ class Baseline:
     def until(self, time_s: float) -> tuple[Moment, ...]:
         """Its moments from the hand-over to the first whole tick at or after that time, or to the end of its drive.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         self.follow(time_s)
         last = next(
             (i for i, moment in enumerate(self._moments) if moment.time_s >= time_s - ROUNDING_S),

@@ -77,9 +77,7 @@ class Catalogs:
     def complete(self, element: XmlElement, scope: Mapping[str, str]) -> None:
         """Checks an element and all in it; gives them their parameters; replaces references by what they name.
 
-        Raises:
-            ScenarioError: something is refused, unknown, or not to be found.
-        """
+        Raises ScenarioError: something is refused, unknown, or not to be found."""
         row = table().get(element.tag, NAMELESS)
         element.scope = scope = _declared(element, scope)
         for name in element.attributes:

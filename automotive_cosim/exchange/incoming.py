@@ -145,9 +145,7 @@ def scenario_text(
 ) -> str:
     """The ``scenario.toml`` of what a file says.
 
-    Raises:
-        ScenarioError: something has no place on the road, acts on the ego, or is not imported.
-    """
+    Raises ScenarioError: something has no place on the road, acts on the ego, or is not imported."""
     mine = story.entities[story.ego]
     if mine.actions:
         raise mine.actions[0]["element"].refused(f"acts on {story.ego}, which SUMO's driver drives; remove it")

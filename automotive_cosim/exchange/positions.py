@@ -59,9 +59,7 @@ class RoadPositions:
     def spot(self, position: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         """Where a position is.
 
-        Raises:
-            ScenarioError: it is not on the road, or counts from something that has no place at the start.
-        """
+        Raises ScenarioError: it is not on the road, or counts from something that has no place at the start."""
         place = position.one(*_SPOTS)
         return _SPOTS[place.tag](self, place, entities)
 
@@ -164,9 +162,7 @@ class RoadPositions:
     def lane_at(self, spot: RoadSpot, ahead_m: float = 0.0, *, is_goal: bool = False) -> tuple[Any, float]:
         """A lane for cars, and how far along it a point ``ahead_m`` ahead of a position is.
 
-        Raises:
-            ScenarioError: the position is not on the road, or heads against it.
-        """
+        Raises ScenarioError: the position is not on the road, or heads against it."""
         number = self._nearest(spot, spot.x_m, spot.y_m, spot.heading_rad, is_goal=is_goal)
         if ahead_m:
             heading = self._heading(number, spot.x_m, spot.y_m)
@@ -183,9 +179,7 @@ class RoadPositions:
     def heading(self, spot: RoadSpot) -> float:
         """Which way a vehicle there heads, counter-clockwise from east.
 
-        Raises:
-            ScenarioError: the position is not on the road.
-        """
+        Raises ScenarioError: the position is not on the road."""
         if spot.heading_rad is not None:
             return spot.heading_rad
         return self._heading(self._nearest(spot, spot.x_m, spot.y_m, None), spot.x_m, spot.y_m)
@@ -252,9 +246,7 @@ class RoadPositions:
     def way(self, name: str, first: Any, goals: Sequence[RoadSpot]) -> list[Any]:
         """The edges from the first over the goals; without any, straight on.
 
-        Raises:
-            ScenarioError: no road leads to one of them.
-        """
+        Raises ScenarioError: no road leads to one of them."""
         edges = [first]
         for goal in goals:
             target = self.lane_at(goal, is_goal=True)[0].getEdge()

@@ -68,9 +68,7 @@ class OpenDriveRoad:
     def pose(self, s_m: float, t_m: float) -> Pose:
         """A point beside the reference line, and the line's heading there.
 
-        Raises:
-            ScenarioError: the file has a curve that is not read.
-        """
+        Raises ScenarioError: the file has a curve that is not read."""
         found = _at(self._geometries, "s", s_m) or (self._geometries[0], 0.0)
         geometry, along_m = found
         u_m, v_m, turned = _curve(geometry, min(along_m, geometry.number("length")))
@@ -91,9 +89,7 @@ class OpenDriveRoad:
     def lanes_at(self, s_m: float) -> Mapping[int, tuple[float, float]]:
         """The lanes at a place: t of each one's middle, and its width.
 
-        Raises:
-            ScenarioError: a lane is given by its border.
-        """
+        Raises ScenarioError: a lane is given by its border."""
         middle_m = self.middle_at(s_m)
         found: dict[int, tuple[float, float]] = {}
         section = _at(self._sections, "s", s_m)

@@ -81,9 +81,7 @@ def read_story(file: Path, ego: str) -> ReadStory:
         file: OpenSCENARIO XML.
         ego: name of the entity that is the cockpit's car.
 
-    Raises:
-        ScenarioError: something is outside what is imported.
-    """
+    Raises ScenarioError: something is outside what is imported."""
     root = read_tree(file)
     if root.tag != "OpenSCENARIO":
         raise root.refused("is not OpenSCENARIO XML")

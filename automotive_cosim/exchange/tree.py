@@ -33,9 +33,7 @@ def evaluated(text: str, scope: Mapping[str, str]) -> str:
     Args:
         text: a value, ``$parameter`` or ``${expression}``.
 
-    Raises:
-        ValueError: it is no expression that can be evaluated, or names an unknown parameter.
-    """
+    Raises ValueError: it is no expression that can be evaluated, or names an unknown parameter."""
     if not text.startswith("$"):
         return text[1:] if text.startswith("\\$") else text
     if not text.startswith("${"):
@@ -123,9 +121,7 @@ class XmlElement:
     def beside(self, name: str) -> Path:
         """The file or folder that an attribute names: beside this file, below it, or in a folder next to its own.
 
-        Raises:
-            ScenarioError: the attribute is missing, or leads elsewhere on this machine.
-        """
+        Raises ScenarioError: the attribute is missing, or leads elsewhere on this machine."""
         given, here = self.text(name), self.path.resolve().parent
         there, below = Path(here.anchor), Path().parts
         with suppress(OSError, ValueError):
@@ -145,9 +141,7 @@ class XmlElement:
     def text(self, name: str, otherwise: str | None = None) -> str:
         """The value of an attribute, with the values of parameters.
 
-        Raises:
-            ScenarioError: it is missing, or an expression that cannot be evaluated.
-        """
+        Raises ScenarioError: it is missing, or an expression that cannot be evaluated."""
         self.taken.add(name)
         value = self.attributes.get(name, otherwise)
         if value is None:
@@ -188,9 +182,7 @@ def read_tree(path: Path, kept: frozenset[str] | None = None) -> XmlElement:
     Args:
         kept: of which elements there is a node, in that of the nearest kept one around it; None keeps all.
 
-    Raises:
-        ScenarioError: it is missing or no XML.
-    """
+    Raises ScenarioError: it is missing or no XML."""
     open_elements: list[XmlElement] = []
     roots: list[XmlElement] = []
 

@@ -36,9 +36,7 @@ class Document:
     def read(self, kind: type[T]) -> T:
         """The whole file as an instance of a type.
 
-        Raises:
-            UserError: of the document's class: it does not fit; one line for each problem.
-        """
+        Raises UserError: of the document's class: it does not fit; one line for each problem."""
         return checked(kind, self.table, self.place, self.error)
 
     def refused(self, steps: Steps, why: str) -> UserError:

@@ -47,9 +47,7 @@ def make_folder(folder: Path, name: str = "") -> Path:
 def beneath(folder: Path, name: str) -> Path:
     """The path of a name beneath a folder, as for ``make_folder``, which need not exist.
 
-    Raises:
-        UserError: a part of the name is a link.
-    """
+    Raises UserError: a part of the name is a link."""
     for part in PurePosixPath(name).parts:
         folder /= part
         if part in ("..", "/") or folder.is_symlink():
@@ -157,9 +155,7 @@ def add_line(file: FileIO, line: str, *, lasting: bool = False) -> None:
         line: without its end.
         lasting: wait until it is on the disk.
 
-    Raises:
-        OSError: it cannot be written, e.g. because the disk is full; earlier lines are kept.
-    """
+    Raises OSError: it cannot be written, e.g. because the disk is full; earlier lines are kept."""
     whole = file.seek(0, os.SEEK_END)
     left = line.encode() + b"\n"
     try:
@@ -194,9 +190,7 @@ def mark_as_written(file: IO[bytes]) -> None:
 def remove(path: Path) -> None:
     """Removes a file, a link, or a folder with all that is in it; nothing where there is none.
 
-    Raises:
-        OSError: it cannot be removed.
-    """
+    Raises OSError: it cannot be removed."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
     else:

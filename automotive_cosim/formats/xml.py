@@ -50,9 +50,8 @@ def scan(
         copy: a file to write, with the very bytes that are read, unpacked.
         most_elements: how many elements it may have; by default ``bounds.ELEMENTS``.
 
-    Raises:
-        UserError: of that class: it cannot be read or is not such XML. What the callbacks raise passes through.
-    """
+    Raises UserError: of that class: it cannot be read or is not such XML. What the callbacks raise passes
+    through."""
     parser = expat.ParserCreate()
     parser.buffer_text = True
     encoding = "utf-8"
@@ -143,9 +142,7 @@ class _FoundError(Exception):
 def read_root(path: Path, *, error: type[UserError]) -> ET.Element:
     """The root element of a file, with its attributes but nothing in it.
 
-    Raises:
-        UserError: of that class, as ``scan``.
-    """
+    Raises UserError: of that class, as ``scan``."""
     root = ET.Element("")
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:

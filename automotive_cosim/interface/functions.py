@@ -118,9 +118,7 @@ def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Ac
     Args:
         arguments: by name, or the text of a JSON object; None for none.
 
-    Raises:
-        ActionError: there is no such function, or the arguments do not fit it.
-    """
+    Raises ActionError: there is no such function, or the arguments do not fit it."""
     if name == CAR:
         given = _object(name, arguments) if isinstance(arguments, str) else dict(arguments or {})
         return action_of(str(given.get("function", "")), _inner(given.get("arguments")))

@@ -100,9 +100,8 @@ class ChatModel(Protocol):
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Answers the last message.
 
-        Raises:
-            ModelError: it cannot be reached or does not answer; the episode then says nothing about the agent.
-        """
+        Raises ModelError: it cannot be reached or does not answer; the episode then says nothing about the
+        agent."""
         ...
 
 

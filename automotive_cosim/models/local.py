@@ -85,9 +85,7 @@ class Local:
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """The answer to the last message.
 
-        Raises:
-            ModelError: the question is longer than its context, or the runtime fails.
-        """
+        Raises ModelError: the question is longer than its context, or the runtime fails."""
         settings = self._settings
         limits = {name: getattr(settings, name) for name in ("seed", "temperature", "max_tokens")}
         body = self._api.body(self.file.stem, messages, limits)
@@ -119,9 +117,7 @@ def packaged() -> Path:
 def _loaded(file: str, context: int, threads: int) -> Any:
     """The runtime with a model: loaded once in a process.
 
-    Raises:
-        ModelError: the file is no model that it can run.
-    """
+    Raises ModelError: the file is no model that it can run."""
     runtime: Any = import_module("xllamacpp")
     chosen = runtime.CommonParams()
     chosen.model.path = file

@@ -52,9 +52,7 @@ class Replay:
             name: the folder or the conversation.
             api: the protocol of the model's endpoint, if it has one; by default chat completions.
 
-        Raises:
-            UserError: there is no such record, it cannot be read, or it has no answers of a model.
-        """
+        Raises UserError: there is no such record, it cannot be read, or it has no answers of a model."""
         path = Path(name)
         if path.exists() or len(path.parts) > 1:
             return cls.read(path)
@@ -66,9 +64,7 @@ class Replay:
     def read(cls, folder: Path) -> "Replay":
         """The answers recorded in an episode's folder.
 
-        Raises:
-            UserError: there is no readable record, or it has no answers of a model.
-        """
+        Raises UserError: there is no readable record, or it has no answers of a model."""
         path = steps_in(folder)
         try:
             stages = list(_stages(path))

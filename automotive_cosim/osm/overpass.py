@@ -118,9 +118,7 @@ def download(
         tell: called with the current activity.
         sleep: called to pause.
 
-    Raises:
-        UserError: the endpoint, the area or the target cannot be used, or the server returns no map.
-    """
+    Raises UserError: the endpoint, the area or the target cannot be used, or the server returns no map."""
     limits = limits or DownloadLimits()
     _check(endpoint, area, target)
     request = urllib.request.Request(

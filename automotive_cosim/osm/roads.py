@@ -57,9 +57,7 @@ _WAY = re.compile(r"-?(new)?(\d+)")
 def way_of(edge_id: str) -> int:
     """The OSM way of an edge: netconvert adds a minus, and a suffix to its pieces.
 
-    Raises:
-        ValueError: it is not such an edge.
-    """
+    Raises ValueError: it is not such an edge."""
     match = _WAY.match(edge_id)
     if match is None:
         raise ValueError(f"{edge_id!r} is not an edge made from an OSM way")

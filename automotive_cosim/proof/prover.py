@@ -200,9 +200,7 @@ class Prover:
 def read_traces(path: Path) -> Mapping[str, str]:
     """The traces that ``tasks validate --json`` printed: a SHA-256 by task, half and seed.
 
-    Raises:
-        UserError: the file cannot be read, or has none.
-    """
+    Raises UserError: the file cannot be read, or has none."""
     try:
         traces = read_json(path)["traces"]
     except (OSError, ValueError, LookupError, TypeError) as error:

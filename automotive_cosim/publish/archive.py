@@ -59,9 +59,7 @@ def unpacked(bundle: Path) -> Iterator[Path]:
 def unpack(bundle: Path, folder: Path) -> None:
     """Unpacks a bundle into an empty folder.
 
-    Raises:
-        UserError: it is not a bundle, or contains a file that does not belong there.
-    """
+    Raises UserError: it is not a bundle, or contains a file that does not belong there."""
     make_folder(folder, "traces")
     try:
         with open_file(bundle) as file, zipfile.ZipFile(file) as archive:

@@ -146,9 +146,7 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
     Returns:
         The tables of tasks, and the bundles that were left out with why.
 
-    Raises:
-        UserError: there is no bundle without a problem, or the page cannot be written.
-    """
+    Raises UserError: there is no bundle without a problem, or the page cannot be written."""
     if not folder.is_dir():
         raise UserError(
             f"{folder} is not a folder; give one with bundles, which `automotive-cosim publish bundle` makes"

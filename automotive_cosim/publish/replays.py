@@ -110,9 +110,7 @@ def _answered(job: TrialSetup, row: TrialRow, steps: Sequence[Json]) -> _Answere
     """The agent of a trial with its recorded answers; None if it has no model, is not of this package, or was given
     what is not on record: sound, or instructions from a file.
 
-    Raises:
-        UserError: the answers cannot be read.
-    """
+    Raises UserError: the answers cannot be read."""
     if job.agent not in MODELLED or job.conditions.hear is Hearing.AUDIO or job.conditions.prompt.file:
         return None
     try:

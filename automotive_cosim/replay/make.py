@@ -87,9 +87,7 @@ def made(simulations: Simulations) -> dict[str, Json]:
 def texts(form: str, actions: Sequence[Action]) -> list[str]:
     """Answers in a native format, one for each action.
 
-    Raises:
-        ValueError: the format has no word for one of them.
-    """
+    Raises ValueError: the format has no word for one of them."""
     chosen = FORMATS[form]
     screen = GuiScreen(*SCREEN_PX, chosen.grid)
     said = []

@@ -77,9 +77,7 @@ class Chart:
     def of(cls, name: str, title: str, drawing: Drawing, narrow: Drawing | None = None) -> Chart:
         """Draws it, for a narrow page by a drawing of its own if there is one.
 
-        Raises:
-            SetupError: matplotlib is not installed.
-        """
+        Raises SetupError: matplotlib is not installed."""
         return cls(name, title, drawing, drawn(name, drawing, WIDE_IN), drawn(name, narrow or drawing, NARROW_IN))
 
     @property
@@ -102,9 +100,7 @@ def charted(
     Args:
         narrow: drawings of those that have another one for a narrow page.
 
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    Raises SetupError: matplotlib is not installed."""
     other = narrow or {}
     return {
         name: Chart.of(name, title, drawing, other.get(name))

@@ -89,9 +89,7 @@ def kept(
 ) -> AbstractContextManager[Store[R]]:
     """Checks a plan and opens its folder, new or to be resumed, whoever runs its jobs: workers or people.
 
-    Raises:
-        UserError: the plan does not fit, or the folder cannot take its results.
-    """
+    Raises UserError: the plan does not fit, or the folder cannot take its results."""
     plan.check()
     return opened(folder, plan.as_json(), row, parts, planned=len(plan.jobs()))
 

@@ -35,9 +35,7 @@ class ForkServer:
     def start(self, request: AgentRequest) -> Wire:
         """Starts an agent's process and returns the connection to it.
 
-        Raises:
-            InfrastructureError: that did not work, twice.
-        """
+        Raises InfrastructureError: that did not work, twice."""
         for _ in range(2):  # the first fork server may have been killed since the last episode
             with suppress(GoneError, TimeoutError, ValueError):
                 return self._forked(request)

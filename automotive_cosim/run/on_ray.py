@@ -199,9 +199,7 @@ class _Actor(Generic[J, R]):
 def _probe(address: str) -> None:
     """Refuses an address where nothing listens, which Ray would try for minutes.
 
-    Raises:
-        SetupError: it cannot be reached.
-    """
+    Raises SetupError: it cannot be reached."""
     if address in ("local", "auto"):
         return
     host, colon, port = address.rpartition(":")

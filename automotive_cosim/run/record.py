@@ -74,9 +74,7 @@ def stamped_folder(name: str) -> Path:
 def check_folder(folder: Path, *, force: bool) -> None:
     """Refuses a folder that cannot take a record, before anything runs.
 
-    Raises:
-        UserError: it is a file, cannot be written, or is not empty and ``force`` is not given.
-    """
+    Raises UserError: it is a file, cannot be written, or is not empty and ``force`` is not given."""
     if folder.exists() and not folder.is_dir():
         raise UserError(f"{folder} is a file; give --out a folder that is empty or does not exist yet")
     if folder.is_dir() and any(folder.iterdir()) and not force:
@@ -155,9 +153,7 @@ class Recorder(TrialObserver):
     def keep_in(self, evaluation: Path) -> None:
         """Writes the trace and the judge's input into the folder of an evaluation.
 
-        Raises:
-            OSError: they cannot be written.
-        """
+        Raises OSError: they cannot be written."""
         if self.lines:
             write_trace(evaluation, self._trial.id, self.lines)
         if self.judged is not None:
@@ -230,9 +226,7 @@ def _fresh(folder: Path) -> FileIO:
     Returns:
         The file of its steps, open.
 
-    Raises:
-        UserError: another record begins there at this instant.
-    """
+    Raises UserError: another record begins there at this instant."""
     lines = growing(make_folder(folder) / STEPS, anew=True)
     for name in set(OF_A_TRIAL) - {STEPS}:
         remove(folder / name)

@@ -70,9 +70,7 @@ def rerun(folder: Path, trial: str = "") -> list[Compared]:
     """Plays the actions of a stored trial in the same setup and compares step by step; arguments and errors are
     those of ``recorded``.
 
-    Raises:
-        InfrastructureError: the simulation failed.
-    """
+    Raises InfrastructureError: the simulation failed."""
     job, stored, channels, failure = recorded(folder, trial)
     return compare(stored, [line for line in played(job, stored, channels, failure)[1].lines if "step" in line])
 
@@ -84,9 +82,7 @@ def recorded(folder: Path, trial: str = "") -> Recorded:
         folder: an evaluation's, or that of a single trial.
         trial: an id of the evaluation, or its unique beginning; a single trial needs none.
 
-    Raises:
-        UserError: no such trial, several of them, or its trace cannot be read.
-    """
+    Raises UserError: no such trial, several of them, or its trace cannot be read."""
     if is_trial(folder):
         return _single(folder, trial)
     manifest = read_evaluation(folder)

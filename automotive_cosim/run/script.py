@@ -32,9 +32,7 @@ class ScriptedAgent:
 def read_script(path: Path) -> ScriptedAgent:
     """Reads a file of actions; empty lines are ignored.
 
-    Raises:
-        ActionError: the file cannot be read, has no action, or a line is malformed; it names file and line.
-    """
+    Raises ActionError: the file cannot be read, has no action, or a line is malformed; it names file and line."""
     actions = []
     for number, line in enumerate(read_text(path, ActionError).split("\n"), start=1):
         if line.strip():

@@ -65,9 +65,7 @@ def run_with(
         simulations: warm simulations to use.
         observers: notified before anything is kept.
 
-    Raises:
-        OSError: trace or pictures cannot be written.
-    """
+    Raises OSError: trace or pictures cannot be written."""
     kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
     recorder, everyone = Recorder(job, kept), [*observers, PhaseObserver()]
     try:
@@ -109,9 +107,7 @@ def agent_for(
         settings: what it is given, and the seed of an agent that draws.
         meter: what it shares with the evaluation's other workers.
 
-    Raises:
-        UserError: there is no such agent or model.
-    """
+    Raises UserError: there is no such agent or model."""
     if not is_outside(name):
         yield make_agent(name, settings=settings)
         return

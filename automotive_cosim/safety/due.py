@@ -154,9 +154,7 @@ class DueScreen:
 
         The space's nominal point becomes one at which something is due, by place, time or seed, if there is one.
 
-        Raises:
-            UserError: nothing comes due anywhere.
-        """
+        Raises UserError: nothing comes due anywhere."""
         if not self.screens:
             yield "nothing has to be tried first: every run of this space can be judged"
             return

@@ -79,9 +79,7 @@ class Trying:
     def __call__(self, point: SearchPoint, repeat: int) -> TriedOutcome:
         """What comes of a point.
 
-        Raises:
-            BudgetSpentError: nothing more may be run, or its model asked; it counts as not run.
-        """
+        Raises BudgetSpentError: nothing more may be run, or its model asked; it counts as not run."""
         trial = trial_of(point, repeat)
         try:
             job = job_of(self.plan, trial)
@@ -156,9 +154,7 @@ def trying(
         used_s: wall time of earlier starts.
         simulations: warm traffic, shared with others; None for its own.
 
-    Raises:
-        UserError: it cannot be written, or holds something else.
-    """
+    Raises UserError: it cannot be written, or holds something else."""
     with ExitStack() as ends:
         store = ends.enter_context(opened(folder, plan.as_json(), kind_of, planned=0, grows=True))
         meter = ends.enter_context(executor.metered(Budget(usd=budget.usd), spent_before(store)))

@@ -33,9 +33,7 @@ def _said(found: Task) -> str:
 def task(name: str) -> Json:
     """One task with both halves in words, and the law on which it is based.
 
-    Raises:
-        UnknownNameError: there is none.
-    """
+    Raises UnknownNameError: there is none."""
     found = CATALOGUE[name]
     halves = []
     for half_name in found.halves:

@@ -45,9 +45,8 @@ class PeoplePlan:
     def check(self) -> None:
         """Checks what is to be dealt.
 
-        Raises:
-            UserError: a code name is invalid or given twice, there is no such task, or there is too little to deal.
-        """
+        Raises UserError: a code name is invalid or given twice, there is no such task, or there is too little to
+        deal."""
         for name in self.people:
             check_code_name(name)
         if len(set(self.people)) < len(self.people) or len(self.people) > MOST_PEOPLE:

@@ -22,9 +22,7 @@ class StudyObservers:
     def observe(self, path: Path) -> None:
         """Locks a file for some seconds, unless another program has already locked it.
 
-        Raises:
-            OSError: it cannot be read.
-        """
+        Raises OSError: it cannot be read."""
         with self._lock:
             file, timer = self._marked.get(path, (None, None))
             if timer is not None:

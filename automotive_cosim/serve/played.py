@@ -64,9 +64,7 @@ def people_plan(
 def check_code_name(name: str) -> None:
     """Refuses names that cannot be used for a person in reports and file names.
 
-    Raises:
-        UserError: it is empty, too long, or has characters other than letters, digits, spaces, - and _.
-    """
+    Raises UserError: it is empty, too long, or has characters other than letters, digits, spaces, - and _."""
     is_plain = all(letter.isalnum() or letter in " -_" for letter in name)
     if not name.strip() or len(name) > LONGEST_NAME or not is_plain:
         raise UserError(
@@ -139,9 +137,7 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
     def job(self, task: str, half: str, seed: int, name: str) -> EpisodeSetup:
         """The next episode of a person.
 
-        Raises:
-            UserError: there is no such task or half, or another process writes here.
-        """
+        Raises UserError: there is no such task or half, or another process writes here."""
         jobs = people_plan((task,), (name,), (seed,), scenario=self._scenario).episodes()
         found = next((job for job in jobs if isinstance(job, EpisodeSetup) and job.half == half), None)
         if found is None:

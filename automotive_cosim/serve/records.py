@@ -78,9 +78,7 @@ class RecordFolders:
         Args:
             parts: names below its folder, of which none may lead elsewhere.
 
-        Raises:
-            NotHereError: there is no such file, or it lies outside the folders given.
-        """
+        Raises NotHereError: there is no such file, or it lies outside the folders given."""
         if not all(map(_is_name, parts)):
             raise NotHereError("there is no such file")
         path = entry.folder.joinpath(*parts)
@@ -95,9 +93,7 @@ class RecordFolders:
         Args:
             trial: id of the trial in an evaluation or a study; None for a recorded trial.
 
-        Raises:
-            NotHereError: there is no such trial, or a file of it lies outside the folders given.
-        """
+        Raises NotHereError: there is no such trial, or a file of it lies outside the folders given."""
         if trial is None:
             found = [entry.folder]
         elif _is_name(trial):
@@ -120,9 +116,7 @@ class RecordFolders:
             folder: the trial's, from ``trial``.
             of: ``screenshot`` or ``road_view`` of ``formats.layout``.
 
-        Raises:
-            NotHereError: there is none.
-        """
+        Raises NotHereError: there is none."""
         return self.file(entry, *of(folder, step).relative_to(entry.folder).parts)
 
 

@@ -65,9 +65,7 @@ class PeopleStudy:
             folder: of the study, new or started with the same plan.
             simulations: warm simulations to use, which the caller closes; by default its own.
 
-        Raises:
-            UserError: the plan does not fit, or the folder belongs to something else or is in use.
-        """
+        Raises UserError: the plan does not fit, or the folder belongs to something else or is in use."""
         self.name = folder.name
         self.folder = folder
         self._detects = plan.detection
@@ -101,9 +99,7 @@ class PeopleStudy:
         Args:
             seat: an earlier secret, which keeps its seat.
 
-        Raises:
-            UserError: there is no such person, or the seat is taken.
-        """
+        Raises UserError: there is no such person, or the seat is taken."""
         with self._lock:
             if person not in self._orders:
                 raise UserError(f"this study has no code name {person[:40]!r}; choose one from the list")
@@ -153,9 +149,7 @@ class PeopleStudy:
     def begin(self, secret: str) -> None:
         """Begins the next episode of a person.
 
-        Raises:
-            UserError: the seat is empty, there is none, the last one's questions are open, or one is running.
-        """
+        Raises UserError: the seat is empty, there is none, the last one's questions are open, or one is running."""
         seat = self.seat(secret)
         with self._lock:
             job = self._next(seat.person)
@@ -169,9 +163,7 @@ class PeopleStudy:
     def answer(self, secret: str, answers: Mapping[str, Any]) -> None:
         """Takes the answers to the questions, each 1 to 5.
 
-        Raises:
-            UserError: the seat is empty, nothing is asked, or an answer is missing or invalid.
-        """
+        Raises UserError: the seat is empty, nothing is asked, or an answer is missing or invalid."""
         person = self.seat(secret).person
         for name in QUESTIONS:
             if type(answers.get(name)) is not int or not 1 <= answers[name] <= len(SCALE):
@@ -185,9 +177,7 @@ class PeopleStudy:
     def detect(self, secret: str, asked: Json) -> None:
         """Takes what came of a stimulus of the episode that a person plays.
 
-        Raises:
-            UserError: the seat is empty, nothing is played or to be detected, or it is no reaction.
-        """
+        Raises UserError: the seat is empty, nothing is played or to be detected, or it is no reaction."""
         person = self.seat(secret).person
         came = detected(asked)
         with self._lock:

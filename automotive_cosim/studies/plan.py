@@ -52,9 +52,7 @@ class SeedJob(Job, Generic[P, R]):
 def opened(name: str, from_place: str = "", to_place: str = "") -> Scenario:
     """A scenario with the ego's routes, cached: every job needs it and a foreign network takes a second to read.
 
-    Raises:
-        ScenarioError: it cannot be read, or has no such route.
-    """
+    Raises ScenarioError: it cannot be read, or has no such route."""
     return open_scenario(name, from_place=from_place, to_place=to_place)
 
 
@@ -93,9 +91,7 @@ def check_edges(incident: Incident, place: str, scenario: Scenario) -> None:
 def plan_of(plan: type[P], values: Mapping[str, Any]) -> P:
     """The plan of a study from a manifest's table.
 
-    Raises:
-        UserError: it is another kind of study, or of another version.
-    """
+    Raises UserError: it is another kind of study, or of another version."""
     given = dict(values)
     if given.pop("study", None) == plan.kind:
         with suppress(UserError):  # its message would mention options that the user has not given

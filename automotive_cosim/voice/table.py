@@ -57,9 +57,7 @@ def sounding(text: str, snr_db: float) -> bytes:
 def heard(text: str, snr_db: float) -> str:
     """What is heard of an English text, at a ratio of words to noise.
 
-    Raises:
-        InfrastructureError: the table does not have it, and the extra is missing or damaged.
-    """
+    Raises InfrastructureError: the table does not have it, and the extra is missing or damaged."""
     return came_from(text) + " ".join(_heard(piece, _column(snr_db)) or NOTHING for piece in pieces(text))
 
 
@@ -89,9 +87,7 @@ def lacking(texts: Iterable[str]) -> list[str]:
 def check(texts: Iterable[str]) -> None:
     """Refuses English texts that cannot all be heard here.
 
-    Raises:
-        InfrastructureError: the table does not have one, and the extra is missing.
-    """
+    Raises InfrastructureError: the table does not have one, and the extra is missing."""
     if missing := lacking(texts):
         raise _unheard(missing[0])
 

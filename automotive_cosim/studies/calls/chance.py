@@ -74,9 +74,7 @@ def prove(running: Running, seed: int) -> Trial:
 def renew(running: Running, fresh: Fresh, seed: int) -> None:
     """Gives everything from here on other random numbers; the same seed gives the same ones.
 
-    Raises:
-        SetupError: the library does not export its generators; not for ``JITTER``.
-    """
+    Raises SetupError: the library does not export its generators; not for ``JITTER``."""
     sumo = running.sumo
     if fresh is not Fresh.JITTER:
         Generators(sumo).seed(seed)

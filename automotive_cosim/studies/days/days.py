@@ -96,9 +96,7 @@ class OwnAdviser:
             spec: ``package.module:Class``.
             network: on which its routes have to lead from edge to edge.
 
-        Raises:
-            UserError: there is no such class, it lacks ``advise(day)``, or it raised.
-        """
+        Raises UserError: there is no such class, it lacks ``advise(day)``, or it raised."""
         self._spec, self._network = spec, network
         made = own_class(spec, "adviser")
         if not callable(getattr(made, "advise", None)):
@@ -112,9 +110,7 @@ class OwnAdviser:
     def advise(self, day: AdvisedDay) -> dict[str, tuple[str, ...]]:
         """The routes that it chose, without those that the trips have already.
 
-        Raises:
-            UserError: it raised, or a route is not one.
-        """
+        Raises UserError: it raised, or a route is not one."""
         try:
             with aside():
                 advised = self._adviser.advise(day)
@@ -160,9 +156,7 @@ class DaysPlan(DaysSettings):
     def check(self) -> None:
         """Checks every name and number before anything runs.
 
-        Raises:
-            UserError: one does not exist or is out of range, or the demand has stops or persons.
-        """
+        Raises UserError: one does not exist or is out of range, or the demand has stops or persons."""
         check_values(self)
         configuration = read_configuration(self.scene().config)
         variant.check_demand(configuration)

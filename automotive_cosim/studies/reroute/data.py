@@ -112,9 +112,7 @@ def whole_drives(study: Study) -> Iterator[WholeRow]:
 def write_data(study: Study) -> list[Path]:
     """Writes the data files and their description into a study's folder; returns their paths.
 
-    Raises:
-        OSError: they cannot be written.
-    """
+    Raises OSError: they cannot be written."""
     written: list[Path] = []
     resources: list[Json] = []
     kinds: dict[str, Sequence[FutureRow | WholeRow | PolicyChoice]] = {

@@ -33,9 +33,7 @@ class StudyPlan(RerouteSettings):
     def check(self) -> None:
         """Checks every name and number before anything runs.
 
-        Raises:
-            UserError: one does not exist or is out of range.
-        """
+        Raises UserError: one does not exist or is out of range."""
         check_values(self)
         for text in self.policies:
             parse_policy(text)
@@ -94,9 +92,7 @@ class StudyPlan(RerouteSettings):
     def opened(self) -> Scenario:
         """The scenario with the ego's routes, before the study's changes.
 
-        Raises:
-            ScenarioError: it cannot be read, or has no such route.
-        """
+        Raises ScenarioError: it cannot be read, or has no such route."""
         return opened(self.scenario, self.from_place, self.to_place)
 
     def jobs(self) -> tuple["StudyJob", ...]:
