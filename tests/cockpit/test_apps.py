@@ -39,8 +39,7 @@ from automotive_cosim.contracts import (
     RouteOption,
     Surroundings,
 )
-from automotive_cosim.contracts.ids import resource_id as shown_id
-from tests.cockpit.fingers import press, shown
+from tests.cockpit.fingers import find, press, shown
 
 from .couplings import COUPLED
 
@@ -192,7 +191,7 @@ def test_another_way_is_offered_with_its_time_and_taken_by_its_edges(make: Make,
     ahead = replace(around.driving.ahead, alternatives=(other,))
     cockpit = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)))
     press(cockpit, "open map; map.route; route.tab.ways")
-    element = next(element for element in cockpit.elements() if element.resource_id == shown_id("route.way.0"))
+    element = find(cockpit, "route.way.0")
     assert "2 min shorter" in element.content_description
     assert press(cockpit, "route.way.0") is OK
     assert cockpit.drain_requests() == (Reroute(edges=other.edges),)
@@ -304,7 +303,7 @@ def test_a_list_of_people_says_that_a_tap_opens_them_and_calls_nobody(cockpit: C
     for tab, first in (("favourites", "favourite"), ("recents", "recent"), ("contacts", "contact")):
         press(cockpit, "open phone", f"phone.tab.{tab}")
         assert shown(cockpit, "phone.about") == "Select a contact to call or message"
-        entry = next(one for one in cockpit.elements() if one.resource_id == shown_id(f"phone.{first}.0"))
+        entry = find(cockpit, f"phone.{first}.0")
         assert entry.content_description.startswith("Call or message")
         assert press(cockpit, f"phone.{first}.0") is OK
         assert (cockpit.screen, shown(cockpit, "contact.call")) == ("contact", "Call")
@@ -460,7 +459,7 @@ def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: 
     before = parked.screenshot()
     assert not [ink.text for ink in render(parked.tree).inks if ink.cut]
     parked.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 3)), 3.0)
-    picture = next(one for one in parked.elements() if one.resource_id == shown_id("manual.film.picture"))
+    picture = find(parked, "manual.film.picture")
     assert picture.content_description == "The video is at 0:03 of 0:40"
     assert (parked.screenshot() != before).any(), "it moves"
     ended = parked.copy()
@@ -474,7 +473,7 @@ def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: 
         parked.sense(surroundings, 1.0)
         assert parked.commands()["apps.film"] == "", "standing in gear and moving"
         assert press(parked, "manual.film") is FeedbackCode.RESTRICTED
-        button = next(one for one in parked.elements() if one.resource_id == shown_id("manual.film"))
+        button = find(parked, "manual.film")
         assert "Videos play only while parked" in button.content_description
         assert not button.is_enabled
 

@@ -34,7 +34,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import SignalError, UnknownNameError
 from automotive_cosim.interface import spaces
-from tests.cockpit.fingers import middle, press, shown
+from tests.cockpit.fingers import find, middle, press, shown
 
 Make = Callable[..., Cockpit]
 OK, NO_EFFECT = FeedbackCode.OK, FeedbackCode.NO_EFFECT
@@ -263,7 +263,7 @@ def test_an_alert_shows_for_a_while_and_the_history_keeps_the_road_s_answer(
     cockpit.sense(later, 60.0)
     assert shown(cockpit, "status.notice") == ""
     cockpit.open_app("safety")
-    entry = next(element for element in cockpit.elements() if element.resource_id == shown_id("safety.history.0"))
+    entry = find(cockpit, "safety.history.0")
     assert "The driver slows down" in entry.content_description
     assert cockpit.commands()["alerts"] == [
         {"kind": "speed", "severity": "warning", "text": "Mind the limit", "speed_kmh": None}

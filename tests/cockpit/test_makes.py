@@ -14,10 +14,10 @@ from automotive_cosim.cockpit.registry import apps, apps_in
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import FeedbackCode, RoadNetwork
 from automotive_cosim.contracts.given import CarMake
-from automotive_cosim.contracts.ids import key_of, resource_id
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import parse
-from tests.cockpit.fingers import middle
+from tests.cockpit.fingers import find, middle
 from tests.laws import over
 
 from .conftest import outside
@@ -45,7 +45,7 @@ def test_the_way_to_every_screen_leads_there(name: CarMake, network: RoadNetwork
     for screen in {*apps(), *tree.SUBPAGES, *make.screens} - {app.name for app in apps_in(Where.STORE)}:
         cockpit = start.copy()
         for key in tree.way(make, screen):
-            found = next(one for one in cockpit.elements() if one.resource_id == resource_id(key))
+            found = find(cockpit, key)
             assert cockpit.tap(*middle(found)).code in (FeedbackCode.OK, FeedbackCode.NO_EFFECT), (screen, key)
         assert cockpit.screen == screen
 

@@ -43,7 +43,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
-from tests.cockpit.fingers import middle, press
+from tests.cockpit.fingers import find, middle, press
 from tests.laws import hold, over
 
 Make = Callable[..., Cockpit]
@@ -408,7 +408,7 @@ def test_long_lists_end_early_while_driving(around: Surroundings, views: Any) ->
                 continue
             cut.add(rows.key)
             assert len(seen) == 21 + 1
-            last = next(one for one in cockpit.elements() if one.resource_id == shown_id(f"{rows.key}.rest"))
+            last = find(cockpit, f"{rows.key}.rest")
             assert not last.is_enabled
             assert "while driving" in last.content_description
             assert press(cockpit, f"{rows.key}.rest") is FeedbackCode.RESTRICTED
