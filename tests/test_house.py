@@ -26,7 +26,7 @@ OTHERS = "beside them"
 CEILINGS = {
     "agents": (6355, 66, 0),
     "benchmarks": (3279, 19, 0),
-    "cli": (4577, 13, 196),
+    "cli": (4575, 13, 196),
     "cockpit": (18378, 188, 0),
     "contracts": (1535, 67, 0),
     "cosim": (736, 5, 0),
@@ -41,20 +41,20 @@ CEILINGS = {
     "measures": (899, 8, 0),
     "models": (2271, 26, 0),
     "osm": (6236, 43, 0),
-    "proof": (3076, 16, 0),
-    "publish": (1573, 8, 0),
+    "proof": (3191, 17, 0),
+    "publish": (1580, 8, 0),
     "replay": (184, 1, 0),
-    "report": (5386, 24, 0),
-    "run": (8341, 80, 0),
+    "report": (5399, 24, 0),
+    "run": (8350, 80, 0),
     "safety": (4175, 33, 0),
     "scenarios": (2003, 8, 0),
     "schemas": (72, 0, 0),
-    "serve": (2603, 22, 0),
+    "serve": (2606, 22, 0),
     "service": (386, 4, 0),
     "studies": (13812, 125, 90),
-    "tasking": (5408, 60, 0),
+    "tasking": (5468, 60, 0),
     "tasks": (15, 0, 0),
-    "tests": (64144, 125, 0),
+    "tests": (64237, 125, 0),
     "traffic": (12572, 80, 0),
     "view": (1755, 15, 0),
     "voice": (540, 0, 0),
@@ -63,7 +63,7 @@ CEILINGS = {
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
 
-DATA_LINES, WIDTH = 16_764, 130
+DATA_LINES, WIDTH = 16_766, 130
 """Lines of the tasks' files, with every phrasing, and characters of the longest."""
 
 
