@@ -4,6 +4,8 @@ A request is a message of ``android_env``, or anything with its fields; no packa
 What adb splits belongs together here: the words of a text are one action, and so are the two taps of a double tap.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

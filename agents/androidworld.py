@@ -11,6 +11,8 @@ Their fixed pauses are switched off, and so are those of the device's modules: h
 A class with ``keeps_pauses = True`` keeps them. ``step`` gets what the driver has said since beneath the goal.
 """
 
+from __future__ import annotations
+
 import queue
 import re
 import sys

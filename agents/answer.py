@@ -7,6 +7,8 @@ Action: {"action_type": ...}
 or the same as one JSON object: ``{"situation": ..., "plan": ..., "action": {...}}``.
 """
 
+from __future__ import annotations
+
 import json
 import re
 from collections.abc import Iterator, Sequence

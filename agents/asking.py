@@ -1,5 +1,7 @@
 """What the agents with a model share: questions within a budget, and the record of the stages."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 from automotive_cosim.agents.base import Stage, StageName

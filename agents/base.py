@@ -1,5 +1,7 @@
 """The protocol of agents, and optional protocols."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum

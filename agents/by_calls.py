@@ -5,6 +5,8 @@ gives the same (``interface.translation``). Its looking about is left out: a cal
 besides, it does as before.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 

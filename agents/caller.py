@@ -11,6 +11,8 @@ What it is told of the screen and the place are conditions (``--see``, ``--geo``
 calls the car's functions, the actions of a finger, or both.
 """
 
+from __future__ import annotations
+
 import json
 from collections import deque
 from collections.abc import Iterator, Mapping

@@ -4,6 +4,8 @@ A process whose parent ends becomes the child of its nearest ancestor that takes
 sessions of their own and can enter no other, so that whoever takes them in tells them from its own children.
 """
 
+from __future__ import annotations
+
 import ctypes
 import os
 import secrets

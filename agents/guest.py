@@ -5,6 +5,8 @@ and gets every channel. ``act`` may return an ``Action``, a JSON object or its t
 of ``act`` is treated as an AndroidWorld agent (``androidworld.py``).
 """
 
+from __future__ import annotations
+
 import ast
 import importlib
 import inspect

@@ -1,5 +1,7 @@
 """A person at the terminal, with numbered elements and a prompt: the same information as T3A."""
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Callable
 from typing import TextIO

@@ -3,6 +3,8 @@
 One of the two reads signs alone; the other also what the law says for the road, the weather and the sight.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator
 

@@ -1,5 +1,7 @@
 """Texts from outside, on lines of their own."""
 
+from __future__ import annotations
+
 import re
 
 

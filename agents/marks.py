@@ -1,5 +1,7 @@
 """Set-of-mark: the screenshot with every element framed and numbered as in the element list."""
 
+from __future__ import annotations
+
 import io
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -3,6 +3,8 @@
 It is off by default, because episodes that learn from each other are no longer independent.
 """
 
+from __future__ import annotations
+
 import re
 import sqlite3
 from collections.abc import Iterator, Sequence

@@ -3,6 +3,8 @@
 reflect on an action that failed -> remember -> perceive -> interpret -> plan -> act
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from automotive_cosim.agents import answer, prompt, prompt_parts

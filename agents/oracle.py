@@ -1,5 +1,7 @@
 """The oracle: plays the task's reference solution by public actions on what it observes."""
 
+from __future__ import annotations
+
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -16,6 +16,8 @@ The process has a session and an empty working folder of its own and no open fil
 ends with it.
 """
 
+from __future__ import annotations
+
 import base64
 import gc
 import os

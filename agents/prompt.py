@@ -5,6 +5,8 @@ including its heading: what an agent is not given does not occur. Any text from 
 name of a street or a contact can begin a section of its own.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files

@@ -8,6 +8,8 @@ rules of the place, those that can matter to what was said keep their line. Afte
 screen stands for the second list. What changes by itself stands last, so that a model's cache holds the rest.
 """
 
+from __future__ import annotations
+
 import json
 import re
 from collections import Counter

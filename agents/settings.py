@@ -1,5 +1,7 @@
 """Profiles of the agents that use a model, as data, and switches that take parts of them away."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -94,7 +96,7 @@ class AgentProfile:
             return ()
         return tuple(each for each in offered(Interface.FUNCTIONS) if each.name not in set(ActionType))
 
-    def under(self, settings: AgentSettings) -> "AgentProfile":
+    def under(self, settings: AgentSettings) -> AgentProfile:
         """The profile without what the settings take away."""
         without = settings.without
         lost = set(settings.conditions.geo.withheld | settings.conditions.see.withheld)

@@ -6,6 +6,8 @@ channels (gpt-oss, Gemma), and sentences (Granite, Apriel). The first mark may s
 off.
 """
 
+from __future__ import annotations
+
 import re
 
 from automotive_cosim.errors import ActionError

@@ -1,5 +1,7 @@
 """Negative controls: trivial strategies that must not succeed in both halves of a pair."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, check

@@ -4,6 +4,8 @@ The harness sends pickled objects. What comes back is JSON and nothing else: to 
 wrote is to run that program. Half surrogate pairs in it, which no file can hold, are replaced here.
 """
 
+from __future__ import annotations
+
 import json
 import pickle
 import re

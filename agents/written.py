@@ -10,6 +10,8 @@ braced     call:name{argument:value}: Gemma
 A call that is only spoken of, between other words, is none. Nothing is ever evaluated.
 """
 
+from __future__ import annotations
+
 import ast
 import json
 import re

@@ -5,6 +5,8 @@ version of the protocol the agent speaks and under which path, never on which ma
 named, and redirects are not followed.
 """
 
+from __future__ import annotations
+
 import asyncio
 import json
 import ssl

@@ -1,5 +1,7 @@
 """What is said to an agent behind an address and by it, as parts of A2A messages, in CAR-bench's contract."""
 
+from __future__ import annotations
+
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence

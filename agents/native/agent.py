@@ -1,5 +1,7 @@
 """The agent ``native``: a model that answers in the format that it was trained on. It sees the picture alone."""
 
+from __future__ import annotations
+
 from collections import deque
 
 from automotive_cosim.agents import prompt

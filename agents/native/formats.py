@@ -3,6 +3,8 @@
 A swipe is the finger's movement; a scroll shows what lies in its direction.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cache

@@ -1,5 +1,7 @@
 """Coordinates: those in which a model answers, and the screen's pixels."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, floor, prod, sqrt

@@ -1,5 +1,7 @@
 """A format's texts: reads the calls out of an answer, and writes them. Nothing in an answer is ever evaluated."""
 
+from __future__ import annotations
+
 import ast
 import json
 import re

@@ -1,5 +1,7 @@
 """What a format's words mean as actions of the car, and back."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

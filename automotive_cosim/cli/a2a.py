@@ -1,5 +1,7 @@
 """``automotive-cosim a2a``: the benchmark as an evaluating agent."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import typer

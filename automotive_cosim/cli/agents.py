@@ -1,5 +1,7 @@
 """``automotive-cosim agents``: the agents that can operate the cockpit."""
 
+from __future__ import annotations
+
 import typer
 
 from automotive_cosim.cli.options import AsJson, print_json

@@ -1,5 +1,7 @@
 """``automotive-cosim bench``: the cost of the coupling on this machine, compared with a bare libsumo loop."""
 
+from __future__ import annotations
+
 from functools import partial
 from typing import Annotated
 

@@ -1,5 +1,7 @@
 """``automotive-cosim ci init``: the script and the workflow with which every pull request is evaluated."""
 
+from __future__ import annotations
+
 import json
 import re
 from importlib.metadata import distribution

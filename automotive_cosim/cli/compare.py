@@ -1,5 +1,7 @@
 """``automotive-cosim compare``: compares two evaluations, as a check for every change."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Annotated, Any
 

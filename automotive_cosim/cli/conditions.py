@@ -1,5 +1,7 @@
 """The options of the conditions: one for each line of their table."""
 
+from __future__ import annotations
+
 import inspect
 from collections.abc import Callable, Mapping
 from functools import partial

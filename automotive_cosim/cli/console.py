@@ -1,5 +1,7 @@
 """Tables, panels and progress in a terminal."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from typing import Any
 

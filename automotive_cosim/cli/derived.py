@@ -1,5 +1,7 @@
 """Options that follow from a type: one for each field of a dataclass that holds what a command can be told."""
 
+from __future__ import annotations
+
 import inspect
 import operator
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping

@@ -1,5 +1,7 @@
 """``automotive-cosim doctor``: what is missing on this machine, and how to install it."""
 
+from __future__ import annotations
+
 import os
 import platform
 import shutil

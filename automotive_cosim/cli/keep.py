@@ -1,5 +1,7 @@
 """``automotive-cosim keep``: warm traffic that outlives the command."""
 
+from __future__ import annotations
+
 from typing import Annotated
 
 import typer

@@ -1,5 +1,7 @@
 """The live view of a run: a panel that changes in a terminal, plain lines anywhere else."""
 
+from __future__ import annotations
+
 import sys
 import threading
 import time

@@ -4,6 +4,8 @@ Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an inf
 130 interrupted, 141 the reader of its output is gone, 143 terminated.
 """
 
+from __future__ import annotations
+
 import ast
 import io
 import os
@@ -144,7 +146,7 @@ def main() -> None:
         terminations.append(number)
         raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
 
-    def swallowed(lost: "sys.UnraisableHookArgs") -> None:
+    def swallowed(lost: sys.UnraisableHookArgs) -> None:
         """A callback, such as a weak reference's, cannot raise: what interrupted it comes once more."""
         if not isinstance(lost.exc_value, KeyboardInterrupt):
             sys.__unraisablehook__(lost)

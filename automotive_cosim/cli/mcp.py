@@ -1,5 +1,7 @@
 """``automotive-cosim mcp``: a server for assistants that speak the Model Context Protocol."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import typer

@@ -1,5 +1,7 @@
 """``automotive-cosim measures``: surrogate measures of safety of recorded trials, as CSV."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Annotated, Any
 

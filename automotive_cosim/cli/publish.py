@@ -1,5 +1,7 @@
 """``automotive-cosim publish``: packs, checks and compares evaluations for others."""
 
+from __future__ import annotations
+
 import secrets
 from contextlib import nullcontext
 from dataclasses import asdict

@@ -1,5 +1,7 @@
 """``automotive-cosim serve``: shows runs, results, tasks and scenarios in a browser."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Annotated, Any
 

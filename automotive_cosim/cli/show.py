@@ -1,5 +1,7 @@
 """``automotive-cosim show``: what the car, the map and the files consist of."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Sequence
 from contextlib import closing

@@ -4,6 +4,8 @@ print, typer.echo -> Plain -> the stream
 rich -> console.Console -> the stream, with rich's own controls
 """
 
+from __future__ import annotations
+
 import os
 import sys
 from collections.abc import Iterable, Iterator

@@ -1,5 +1,7 @@
 """The widget tree as a list of elements in AndroidWorld's fields: only what can be read or touched."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from functools import lru_cache
 from itertools import chain

@@ -3,6 +3,8 @@
 An app is a file in ``apps/`` that has an ``APP``, or a folder whose ``app.py`` has it; ``registry`` finds it there.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum

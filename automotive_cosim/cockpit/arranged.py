@@ -4,6 +4,8 @@ Nothing is made twice: a control is taken from the screen that has it at home, w
 another box.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial

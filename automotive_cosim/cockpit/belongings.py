@@ -1,5 +1,7 @@
 """What the driver brings into the car besides what is drawn: people, messages, appointments, memos, songs."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import date, timedelta

@@ -12,6 +12,8 @@ follows from the heat transfer coefficient (Lewis relation). Sources are given w
 without one are marked as assumptions.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
@@ -183,7 +185,7 @@ class CabinStart:
     """ug/m3: clean city air after the cabin filter."""
 
     @classmethod
-    def read(cls, given: Mapping[str, Any]) -> "CabinStart":
+    def read(cls, given: Mapping[str, Any]) -> CabinStart:
         """Creates it from a mapping of field names.
 
         Raises:
@@ -223,7 +225,7 @@ class Cabin:
     """ug/m3."""
 
     @classmethod
-    def at(cls, start: CabinStart, outside: Air) -> "Cabin":
+    def at(cls, start: CabinStart, outside: Air) -> Cabin:
         """With the glass at its equilibrium temperature in this air."""
         return cls(
             start,
@@ -244,7 +246,7 @@ class Cabin:
         """Dew point: colder glass fogs."""
         return dew_point_c(self.temperature_c, self.humidity_pct)
 
-    def after(self, duration_s: float, controls: Controls, outside: Air) -> "Cabin":
+    def after(self, duration_s: float, controls: Controls, outside: Air) -> Cabin:
         """The cabin after a time with constant controls and weather."""
         cabin = self
         steps = math.ceil(duration_s / STEP_S - 1e-9)
@@ -252,7 +254,7 @@ class Cabin:
             cabin = cabin._step(duration_s / steps, controls, outside)
         return cabin
 
-    def _step(self, dt_s: float, controls: Controls, outside: Air) -> "Cabin":
+    def _step(self, dt_s: float, controls: Controls, outside: Air) -> Cabin:
         blown = BLOWER_FULL * controls.fan_pct / 100
         leak = AIR_DENSITY * CABIN_VOLUME_M3 * _leaks_per_hour(controls, outside) / 3600
         supply = self._supply(controls, outside, blown, leak)
@@ -288,7 +290,7 @@ class Cabin:
         settled = (leak + (1 - CABIN_FILTER) * fresh) * outside.fine_dust / out
         return settled + (self.fine_dust - settled) * math.exp(-out * dt_s / CABIN_VOLUME_M3)
 
-    def _supply(self, controls: Controls, outside: Air, blown: float, leak: float) -> "_Supply":
+    def _supply(self, controls: Controls, outside: Air, blown: float, leak: float) -> _Supply:
         """Air as it leaves the outlets: taken in, dried and cooled by the evaporator, then heated.
 
         The control adds to what holds the set temperature, by the cabin's balance of heat, a part for the present
@@ -308,7 +310,7 @@ class Cabin:
         return _Supply(max(taken_c, min(wanted, hottest_c(taken_c, blown))), ratio, controls.fan_pct)
 
     def _pane(
-        self, pane: Pane, dt_s: float, outside: Air, wind: float, jet: "_Supply | None", heater_w_m2: float
+        self, pane: Pane, dt_s: float, outside: Air, wind: float, jet: _Supply | None, heater_w_m2: float
     ) -> Pane:
         h_in, near_c, ratio = INSIDE_STILL, self.temperature_c, self.moisture
         if jet is not None:

@@ -1,5 +1,7 @@
 """Calls: every function of the car by its name, what a call does, and the readings that no app has."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cache

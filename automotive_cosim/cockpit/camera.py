@@ -1,5 +1,7 @@
 """What the rear and the door camera show: the road behind, its lanes, and the vehicles that are there."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import lru_cache
 

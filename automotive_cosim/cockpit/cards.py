@@ -3,6 +3,8 @@
 A control is named by its signal alone (``controls``); where a screen has another key or name for it, it gives them.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TypeVar

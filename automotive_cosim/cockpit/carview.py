@@ -1,5 +1,7 @@
 """The car from above: body, glass with its fog, the light of its lamps, and an arrow where it heads."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import lru_cache
 

@@ -1,5 +1,7 @@
 """Changes of the car that no finger makes, at times set before departure: a belt is opened, a tyre leaks."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -9,6 +9,8 @@ Every action answers with a ``Feedback`` and never raises; a wrong one changes n
 determined by the calls: time comes only from ``sense``.
 """
 
+from __future__ import annotations
+
 from collections.abc import Collection, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
@@ -145,7 +147,7 @@ class Cockpit(Touchscreen):
         for path, value in (sensors or {}).items():
             self.inject(path, value)
 
-    def copy(self) -> "Cockpit":
+    def copy(self) -> Cockpit:
         twin = Cockpit.__new__(Cockpit)
         twin._state = self._state.copy()
         twin._tree = self._tree
@@ -161,8 +163,8 @@ class Cockpit(Touchscreen):
         self._tree = None
 
     def freshened(
-        self, departed: "Cockpit", surroundings: Surroundings, way: timedelta, *, with_air: bool
-    ) -> "Cockpit":
+        self, departed: Cockpit, surroundings: Surroundings, way: timedelta, *, with_air: bool
+    ) -> Cockpit:
         """A copy as if it had just departed here, for the arguments of ``sensing.put_back``."""
         twin = self.copy()
         put_back(twin._state, departed._state, surroundings, way, with_air=with_air)

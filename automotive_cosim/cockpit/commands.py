@@ -1,5 +1,7 @@
 """Commands that every app uses: to set signals, to replace app data, to ask the driver."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any

@@ -4,6 +4,8 @@ Range, unit and step stand in ``signals``, why a control is locked while driving
 has no room for a name gives its own.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple

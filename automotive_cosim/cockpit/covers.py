@@ -1,5 +1,7 @@
 """Covers of what plays, made from its name: the same name has the same cover on every machine."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import lru_cache
 from hashlib import blake2b

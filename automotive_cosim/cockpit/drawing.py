@@ -4,6 +4,8 @@ Shapes are drawn from cached antialiased masks, so that a frame costs millisecon
 ``inks`` with the box that it may fill, for the tests of legibility.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -71,7 +73,7 @@ class Canvas:
         style: Style = HOME_STYLE,
         *,
         night: bool = False,
-    ) -> "Canvas":
+    ) -> Canvas:
         """A canvas of that size in pixels, filled with one colour."""
         return cls(Image.new("RGB", (width, height), colour), scale, style, night=night)
 

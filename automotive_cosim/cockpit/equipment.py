@@ -4,6 +4,8 @@ What is not fitted leaves a line in its place that says so; what is out of order
 too. Either way the car refuses the command and tells no reading, whoever asks: a finger, a function or an app.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 

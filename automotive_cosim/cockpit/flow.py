@@ -7,6 +7,8 @@ one that takes what the others leave. ``(92, part)`` is a part with another heig
 its width, and ``(REST, part)`` one that takes what is left.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -28,7 +30,7 @@ PADDING = 28, 24
 class Block:
     """Parts, and how a box is divided among them; they need not have a box of their own in the tree."""
 
-    parts: tuple["BlockPart | None", ...]
+    parts: tuple[BlockPart | None, ...]
     """None where a box stays empty."""
     divide: Callable[[Rect], Iterable[Rect]]
     height: LayoutPart = REST

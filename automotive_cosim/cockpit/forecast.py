@@ -1,5 +1,7 @@
 """The cabin after the driver has left it: how warm those who stay will have it."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 from automotive_cosim.cockpit.cabin import SUN_W, Air, parked_c

@@ -1,5 +1,7 @@
 """Parts of every screen: the status bar above, the dock below."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache, lru_cache

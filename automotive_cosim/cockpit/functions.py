@@ -12,6 +12,8 @@ recorded, judged and replayed as a touch is.
     set_hvac_temperature(which="driver", celsius=21.5)
 """
 
+from __future__ import annotations
+
 import inspect
 import json
 import re

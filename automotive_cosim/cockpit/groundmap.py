@@ -1,5 +1,7 @@
 """Water, green and buildings as pictures show them, under everything else."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The on-screen keyboard, over the lower half of the screen while a text field is focused."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 

@@ -8,6 +8,8 @@ A part is its size in logical pixels, or ``REST``: what the others leave, in equ
 without a gap; a gap is a part of its own.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 from itertools import accumulate, pairwise
 from typing import Final

@@ -17,6 +17,8 @@ those with ``shelves`` show controls of other screens; one with the name of a sc
 car can do, and how, is the same in all of them.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property

@@ -1,5 +1,7 @@
 """The network for the moving map: what a camera sees, and which names fit."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -43,7 +45,7 @@ def whole_heading_deg(heading_deg: float) -> float:
 
 
 def camera_of(
-    roads: "RoadMap", ego: tuple[float, float, float] | None, metres_per_pixel: float, north_up: bool = False
+    roads: RoadMap, ego: tuple[float, float, float] | None, metres_per_pixel: float, north_up: bool = False
 ) -> Camera:
     """Over the car (x, y and heading), or over the middle of the network while the position is unknown."""
     x_min, y_min, x_max, y_max = roads.network.bounds_m
@@ -99,7 +101,7 @@ class RoadMap:
     def _folded(self) -> frozenset[str]:
         return frozenset(name.casefold() for name in self.names)
 
-    def in_sight(self, view: "View", width: float, height: float) -> list["Stroke"]:
+    def in_sight(self, view: View, width: float, height: float) -> list[Stroke]:
         """The roads in a picture of that size, the uppermost last: tunnels, then minor roads, then major roads.
 
         From further away, quiet roads are omitted, then side streets.
@@ -108,7 +110,7 @@ class RoadMap:
         found = found[self._ranks[found] >= _least_rank(view.camera.metres_per_pixel)]
         return self._strokes(found[np.lexsort((found, self._depths[found]))], view)
 
-    def strokes(self, edges: Iterable[str], view: "View") -> list["Stroke"]:
+    def strokes(self, edges: Iterable[str], view: View) -> list[Stroke]:
         """The roads of existing edges, in order, whether visible or not."""
         found = [self._index[edge] for edge in edges if edge in self._index]
         return self._strokes(np.array(found, dtype=np.int64), view)
@@ -145,7 +147,7 @@ class RoadMap:
                 break
         return tuple(names.values())
 
-    def _strokes(self, found: npt.NDArray[np.int64], view: "View") -> list["Stroke"]:
+    def _strokes(self, found: npt.NDArray[np.int64], view: View) -> list[Stroke]:
         starts, ends = self._starts[found], self._starts[found + 1]
         picked = np.concatenate([np.arange(a, b) for a, b in zip(starts, ends, strict=True)] or [np.empty(0, int)])
         flat = view.pixels(self._points[picked]).ravel().tolist()

@@ -5,6 +5,8 @@ new picture is cut out of the last sheet. Which sheet and where follows from the
 never depends on what was drawn before.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """Messages that change only what is shown: another screen, a part of it, and what is typed into its fields."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 from automotive_cosim.cockpit.restrictions import STRING_LIMIT

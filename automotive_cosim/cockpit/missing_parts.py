@@ -1,5 +1,7 @@
 """One thing that a car lacks, as data."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

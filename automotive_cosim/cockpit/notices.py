@@ -1,5 +1,7 @@
 """What requires attention: the same on the status bar's badge, in the notifications and on the home screen."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 
 from automotive_cosim.cockpit.occupants import Kind, seated

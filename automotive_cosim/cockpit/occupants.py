@@ -6,6 +6,8 @@ An ``Occupant`` is how a task or a drive says it before departure. From then on 
 (``signals.OCCUPANT``), as a car's seat mats, buckles and interior camera would.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

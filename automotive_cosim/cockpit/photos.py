@@ -1,5 +1,7 @@
 """Photos that people send. What one shows is in the picture alone: the list of elements says that it is a photo."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

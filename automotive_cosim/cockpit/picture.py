@@ -1,5 +1,7 @@
 """The whole picture: the status bar, the present screen with what is beside and above it, and the dock."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.apps.home import METRES_PER_PIXEL, drive_card, media_card
 from automotive_cosim.cockpit.apps.map.scene import ego
 from automotive_cosim.cockpit.apps.map.screens import map_view, street_plate

@@ -1,5 +1,7 @@
 """Places, generated from a seed, on streets of the network."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """The apps that there are: every file and folder of ``apps/``."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from functools import cache
 from importlib import import_module

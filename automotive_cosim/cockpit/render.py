@@ -1,5 +1,7 @@
 """Draws each widget, in the day or night palette."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any
 

@@ -4,6 +4,8 @@ The bits and limits are those of ``android.car.drivingstate.CarUxRestrictions``
 (https://developer.android.com/reference/android/car/drivingstate/CarUxRestrictions).
 """
 
+from __future__ import annotations
+
 from enum import IntFlag, StrEnum
 
 from automotive_cosim.contracts.text import say

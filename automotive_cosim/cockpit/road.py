@@ -1,5 +1,7 @@
 """Requests to the driver and the router, and their replies."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

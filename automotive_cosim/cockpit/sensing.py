@@ -1,5 +1,7 @@
 """Updates the car's signals, air, glass and battery from the surroundings, and reads what its sensors say."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import replace
 from datetime import timedelta

@@ -1,5 +1,7 @@
 """How far the car's sensors, its map and its traffic service reach: declared here and nowhere else."""
 
+from __future__ import annotations
+
 RADAR_M = 150.0
 """Reach of the forward radar; a typical long-range one."""
 CAMERA_M = 150.0

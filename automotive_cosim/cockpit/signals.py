@@ -10,6 +10,8 @@ language are sensors in VSS, here switches as well; the horn is an actuator ther
 off. What VSS lacks has paths in its manner.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -528,7 +530,7 @@ class Signals:
     def reset(self) -> None:
         self._values = {path: signal.default for path, signal in CATALOGUE.items()}
 
-    def copy(self) -> "Signals":
+    def copy(self) -> Signals:
         twin = Signals.__new__(Signals)
         twin._values = self._values.copy()
         return twin

@@ -10,6 +10,8 @@ The companion is the map with what plays now (``picture``). Screens with a large
 room as well. Status bar and dock have one line each, in portrait two.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import Enum, StrEnum
 

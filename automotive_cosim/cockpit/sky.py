@@ -1,5 +1,7 @@
 """The car's sensors of sky, air and surface: light, glare, visibility, fine dust and grip."""
 
+from __future__ import annotations
+
 import math
 from datetime import UTC, datetime
 

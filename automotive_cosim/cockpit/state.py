@@ -4,6 +4,8 @@
 ``AppData``. A touched widget sends a ``Message``; it is a ``Command`` if it commands the car, an app or the road.
 """
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -57,20 +59,20 @@ class AppData:
         """The initial parts of screens that depend on it (``State.picked``)."""
         return {}
 
-    def names(self, state: "State") -> Mapping[str, tuple[str, ...]]:
+    def names(self, state: State) -> Mapping[str, tuple[str, ...]]:
         """Names by kind that a task can ask for."""
         return {}
 
-    def settled(self, state: "State") -> None:
+    def settled(self, state: State) -> None:
         """Follows signals that were commanded."""
 
-    def commanded(self, state: "State", signal: Signal[Any]) -> None:
+    def commanded(self, state: State, signal: Signal[Any]) -> None:
         """Follows one signal that was commanded by itself, to another value."""
 
-    def entered(self, state: "State") -> None:
+    def entered(self, state: State) -> None:
         """Follows the change to another screen."""
 
-    def passed(self, state: "State", before: Surroundings | None, dt_s: float) -> None:
+    def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
         """Lets time pass.
 
         Args:
@@ -79,13 +81,13 @@ class AppData:
             dt_s: seconds since.
         """
 
-    def received(self, state: "State") -> None:
+    def received(self, state: State) -> None:
         """Takes in what has come from outside."""
 
-    def answered(self, state: "State", request: RoadRequest, answer: Answer) -> None:
+    def answered(self, state: State, request: RoadRequest, answer: Answer) -> None:
         """Takes the road's reply to a request."""
 
-    def put_back(self, state: "State", departed: "State") -> None:
+    def put_back(self, state: State, departed: State) -> None:
         """Puts back what the way used up, as it was at departure (``fresh.put_back``)."""
 
 
@@ -95,11 +97,11 @@ class Message(ABC):
     __slots__ = ()
 
     @property
-    def command(self) -> "Command | None":
+    def command(self) -> Command | None:
         return None
 
     @abstractmethod
-    def perform(self, state: "State") -> Feedback:
+    def perform(self, state: State) -> Feedback:
         """Its effect."""
 
 
@@ -109,7 +111,7 @@ class Command(Message):
     __slots__ = ()
 
     @property
-    def command(self) -> "Command | None":
+    def command(self) -> Command | None:
         return self
 
     @property
@@ -118,18 +120,18 @@ class Command(Message):
         return False
 
     @abstractmethod
-    def aims(self, state: "State") -> frozenset[str]:
+    def aims(self, state: State) -> frozenset[str]:
         """The keys of ``State.commands`` that it is given for, without what the car couples to them.
 
         Args:
             state: before it is performed.
         """
 
-    def changes(self, state: "State") -> Mapping[str, Any]:
+    def changes(self, state: State) -> Mapping[str, Any]:
         """The fields of app data that it will change, if it replaces app data."""
         return {}
 
-    def repeat(self, state: "State", record: "CommandRecord", keys: Collection[str]) -> None:
+    def repeat(self, state: State, record: CommandRecord, keys: Collection[str]) -> None:
         """Gives it once more as far as it aims at these keys: in full or not at all."""
         if record.aims & frozenset(keys):
             state.perform(self)
@@ -236,7 +238,7 @@ class State:
     given: tuple[CommandRecord, ...] = ()
     """What was commanded, in order."""
 
-    def copy(self) -> "State":
+    def copy(self) -> State:
         return replace(self, vehicle=self.vehicle.copy())
 
     def of(self, kind: type[D]) -> D:

@@ -1,5 +1,7 @@
 """Tell-tales in the shapes and colours of ISO 2575, and the road signs that the camera read, drawn by lines."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum

@@ -1,5 +1,7 @@
 """A time of day at which something happens."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 
@@ -16,7 +18,7 @@ class Timer:
         """The time as hours and minutes."""
         return f"{self.minute // 60:02d}:{self.minute % 60:02d}"
 
-    def moved(self, minutes: int) -> "Timer":
+    def moved(self, minutes: int) -> Timer:
         """A copy with another time of day."""
         return replace(self, minute=(self.minute + minutes) % 1440)
 

@@ -1,5 +1,7 @@
 """The tree of screens of a make: what leads where, and the reading of a make's file."""
 
+from __future__ import annotations
+
 import hashlib
 import re
 from collections.abc import Collection, Iterator, Mapping

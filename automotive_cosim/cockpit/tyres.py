@@ -4,6 +4,8 @@
 tau dT/dt = T_air + warming * speed - T         first order
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -26,13 +28,13 @@ class Tyres:
     """Gauge pressures at ``COLD_C``."""
     temperature_c: float
 
-    def after(self, dt_s: float, air_c: float, speed_kmh: float) -> "Tyres":
+    def after(self, dt_s: float, air_c: float, speed_kmh: float) -> Tyres:
         """The tyres some seconds later."""
         settled_c = air_c + WARMING_K_PER_KMH * speed_kmh
         left = math.exp(-dt_s / SETTLING_S)
         return replace(self, temperature_c=settled_c + (self.temperature_c - settled_c) * left)
 
-    def changed(self, tyre: int, pressure_kpa: Callable[[float], float]) -> "Tyres":
+    def changed(self, tyre: int, pressure_kpa: Callable[[float], float]) -> Tyres:
         """The tyres with another cold pressure in one of them, given its present one."""
         cold = self.cold_kpa
         return replace(self, cold_kpa=(*cold[:tyre], float(pressure_kpa(cold[tyre])), *cold[tyre + 1 :]))

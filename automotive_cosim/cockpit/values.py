@@ -1,5 +1,7 @@
 """Values in words, in the units of the display."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.signals import HMI, Signals
 from automotive_cosim.contracts.text import Quantity
 

@@ -1,5 +1,7 @@
 """Couplings between switches, automatic lamps, and the battery."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
@@ -98,7 +100,7 @@ class Vehicle:
     lacks: tuple[Lacking, ...] = ()
     """What it was not fitted with, or is out of order."""
 
-    def copy(self) -> "Vehicle":
+    def copy(self) -> Vehicle:
         return Vehicle(self.signals.copy(), self.dark, self.before_mode, self.lacks)
 
     def command(self, signal: Signal[T], value: T) -> str:

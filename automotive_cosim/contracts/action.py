@@ -1,5 +1,7 @@
 """An agent's actions."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum

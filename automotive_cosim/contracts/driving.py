@@ -1,5 +1,7 @@
 """The ego's state on the road, and what is around and ahead of it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from enum import StrEnum
 

@@ -1,5 +1,7 @@
 """What people aboard ask an agent for on a drive."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated

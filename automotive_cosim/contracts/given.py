@@ -1,5 +1,7 @@
 """What an agent may be given: the channels of its observation, and the values of each condition."""
 
+from __future__ import annotations
+
 import re
 from abc import abstractmethod
 from enum import StrEnum
@@ -218,7 +220,7 @@ class PromptLength(OrFile):
         return OWN_PROMPT
 
     @property
-    def length(self) -> "PromptLength":
+    def length(self) -> PromptLength:
         """One of those listed: a file of one's own takes the rest from the standard prompt."""
         return PromptLength.STANDARD if self.file else self
 
@@ -243,7 +245,7 @@ class CarMake(OrFile):
     def own(cls) -> str:
         return OWN_MAKE
 
-    def at(self, seed: int) -> "CarMake":
+    def at(self, seed: int) -> CarMake:
         """The make of the episode with a seed: itself, or one of the others if it is drawn."""
         if self is not CarMake.DRAWN:
             return self

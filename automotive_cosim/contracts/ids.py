@@ -5,6 +5,8 @@ from it, ``view_8a0bcd``; entries of a list have the list's id and their number,
 the text and the description says what a widget does.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 from hashlib import blake2b
 

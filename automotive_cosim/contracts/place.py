@@ -1,5 +1,7 @@
 """The car's surroundings: weather, position fix, link."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated

@@ -1,5 +1,7 @@
 """Factors between units, JSON, numbers in texts, and how progress is told."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from math import floor, isfinite, log10
 from typing import Any

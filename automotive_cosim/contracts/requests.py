@@ -1,5 +1,7 @@
 """The cockpit's requests to the road, and the answers."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import StrEnum
 

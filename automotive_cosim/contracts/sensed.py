@@ -1,5 +1,7 @@
 """What the car itself notices around, ahead and aboard."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import StrEnum
 

@@ -1,5 +1,7 @@
 """The road as a picture shows it: what does not move, and everything that does at one instant."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import IntFlag
 

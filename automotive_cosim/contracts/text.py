@@ -10,6 +10,8 @@ Each is an English ``str``. The message with its named fields is what catalogues
 plain ``str`` is data in every language: a name, a time, what somebody wrote.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
@@ -35,7 +37,7 @@ class Text(str):
 
     def __new__(
         cls, message: str, fields: dict[str, FieldValue], context: str = "", plural: str = "", number: int = 1
-    ) -> "Text":
+    ) -> Text:
         """Fills in the fields. Use ``say``, ``say_in``, ``counted`` or ``joined``, which catalogues know."""
         form = plural if plural and number != 1 else message
         text = super().__new__(cls, form.format(**fields) if fields else form)

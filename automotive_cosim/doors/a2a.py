@@ -5,6 +5,8 @@
 Nothing of a task or a verdict is told before the end.
 """
 
+from __future__ import annotations
+
 import asyncio
 import json
 import threading

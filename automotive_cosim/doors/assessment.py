@@ -3,6 +3,8 @@
 {"participants": {ROLE: URL}, "config": {...}}  ->  a plan  ->  an evaluation  ->  {"score", ..., "rows"}
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass

@@ -5,6 +5,8 @@ one: a request names this server, comes from no other site and, where there is a
 (``?token=``) or as ``Authorization: Bearer``.
 """
 
+from __future__ import annotations
+
 import asyncio
 import hmac
 from collections.abc import Collection
@@ -39,7 +41,7 @@ class Punctual(_Protocol):  # type: ignore[misc]
     uvicorn waits for ever, and at its own limit refuses whoever comes.
     """
 
-    _open: ClassVar[dict["Punctual", None]] = {}
+    _open: ClassVar[dict[Punctual, None]] = {}
 
     def connection_made(self, transport: asyncio.Transport) -> None:
         """Makes room for itself, or ends if there is none."""

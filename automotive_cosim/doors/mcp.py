@@ -4,6 +4,8 @@ Every request stands alone, as the protocol has it since 2026: ``start`` returns
 tool takes it. Needs the ``mcp`` package (extra ``doors``).
 """
 
+from __future__ import annotations
+
 import base64
 import functools
 import inspect

@@ -1,5 +1,7 @@
 """The server of the Model Context Protocol over HTTP, for whoever has its token."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import uvicorn

@@ -1,5 +1,7 @@
 """What can be set about the servers that others connect to. Each field is an option of ``mcp`` or ``a2a``."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

@@ -1,6 +1,8 @@
 """What several doors share: one service for a whole process; trials and conditions from plain words; functions as
 tools of a host."""
 
+from __future__ import annotations
+
 import inspect
 from collections.abc import Callable, Collection, Mapping
 from functools import cache

@@ -1,5 +1,7 @@
 """What SUMO does not say of a vehicle's body: its axles, its height, its middle."""
 
+from __future__ import annotations
+
 from math import cos, radians, sin
 
 from automotive_cosim.contracts import SeenVehicle

@@ -1,6 +1,8 @@
 """Checks an OpenSCENARIO file against the table, gives values to its parameters, and puts in what it takes from
 catalogs."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache

@@ -8,6 +8,8 @@ watcher does that the flat view has no action for, such as an answer at a border
 that the oracle cannot solve with the actions of the flat view is refused.
 """
 
+from __future__ import annotations
+
 import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing

@@ -6,6 +6,8 @@ scenario names, turned into a network by netconvert, or a SUMO network with the 
 The ego is the cockpit's car, which SUMO's driver drives; other vehicles are incidents of the kind ``vehicle``.
 """
 
+from __future__ import annotations
+
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping

@@ -1,5 +1,7 @@
 """What formats need that may not be installed, so that it is told before any work."""
 
+from __future__ import annotations
+
 from collections.abc import Collection
 from contextlib import suppress
 from importlib.util import find_spec

@@ -8,6 +8,8 @@ leaves out who may use a lane: their ``access`` is written here. Coordinates are
 record.
 """
 
+from __future__ import annotations
+
 import math
 import tempfile
 import xml.etree.ElementTree as ET

@@ -8,6 +8,8 @@ the standard has no word for, a tap or an alert, is a ``CustomCommandAction`` of
 the action as JSON.
 """
 
+from __future__ import annotations
+
 import json
 import re
 import xml.etree.ElementTree as ET

@@ -10,6 +10,8 @@ A trace is a file of OSI's own (``.osi``) or one of MCAP (``.mcap``), which says
 OSI recommends, from which readers of ``.osi`` take the kind of its messages.
 """
 
+from __future__ import annotations
+
 import errno
 import tempfile
 from bisect import bisect_right

@@ -1,5 +1,7 @@
 """A kept trial: the road second by second, and what the agent did."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise

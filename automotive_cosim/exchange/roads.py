@@ -1,5 +1,7 @@
 """Where places on the roads of an OpenDRIVE file are: reference lines, lane sections, and widths of lanes."""
 
+from __future__ import annotations
+
 import math
 import xml.etree.ElementTree as ET
 from bisect import bisect_right

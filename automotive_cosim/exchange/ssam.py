@@ -6,6 +6,8 @@ between two seconds a vehicle is on the cubic that has SUMO's places, speeds and
 seen at only one of them is missing. Records have no links, so that SSAM tells kinds of conflicts by their angles.
 """
 
+from __future__ import annotations
+
 import struct
 from collections.abc import Iterator
 from itertools import pairwise

@@ -1,5 +1,7 @@
 """What an OpenSCENARIO file says: its vehicles, what they do and when, and the sky."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,5 +1,7 @@
 """The traffic of a recorded trial as SUMO's FCD, CSV and Parquet: a line for each vehicle and second."""
 
+from __future__ import annotations
+
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import astuple, fields

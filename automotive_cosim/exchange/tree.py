@@ -1,5 +1,7 @@
 """An XML file as a tree whose elements know their lines, and which refuses what it is not asked for."""
 
+from __future__ import annotations
+
 import ast
 import math
 import operator
@@ -74,7 +76,7 @@ class XmlElement:
     attributes: Mapping[str, str]
     line: int
     path: Path
-    parts: list["XmlElement"] = field(default_factory=list)
+    parts: list[XmlElement] = field(default_factory=list)
     scope: Mapping[str, str] = field(default_factory=dict)
     """The values of the parameters that hold here."""
     taken: set[str] = field(default_factory=set)
@@ -84,7 +86,7 @@ class XmlElement:
         """The error that names it and its line."""
         return ScenarioError(f"{self.path} line {self.line}: <{self.tag}> {why}")
 
-    def only(self, *tags: str) -> list["XmlElement"]:
+    def only(self, *tags: str) -> list[XmlElement]:
         """Its parts, all of which have one of these tags. Raises ScenarioError: one has another."""
         for part in self.parts:
             if part.tag not in tags:
@@ -92,26 +94,26 @@ class XmlElement:
         self.taken.update(tags)
         return self.parts
 
-    def all(self, tag: str) -> list["XmlElement"]:
+    def all(self, tag: str) -> list[XmlElement]:
         """Its parts with that tag."""
         self.taken.add(tag)
         return [part for part in self.parts if part.tag == tag]
 
-    def find(self, tag: str) -> "XmlElement | None":
+    def find(self, tag: str) -> XmlElement | None:
         """Its only part with that tag, or None. Raises ScenarioError: it has several."""
         found = self.all(tag)
         if len(found) > 1:
             raise found[1].refused(f"is the second in <{self.tag}>, which can have one")
         return found[0] if found else None
 
-    def one(self, *tags: str) -> "XmlElement":
+    def one(self, *tags: str) -> XmlElement:
         """Its only part, with one of these tags. Raises ScenarioError: it has none, several or another."""
         found = self.only(*tags)
         if len(found) != 1:
             raise self.refused(f"has {len(found)} parts; it needs one of {', '.join(tags)}")
         return found[0]
 
-    def part(self, tag: str) -> "XmlElement":
+    def part(self, tag: str) -> XmlElement:
         """Its only part with that tag. Raises ScenarioError: it has none, or several."""
         found = self.find(tag)
         if found is None:

@@ -1,5 +1,7 @@
 """What models and clients fill in where they have nothing to say."""
 
+from __future__ import annotations
+
 from collections.abc import Collection
 
 _BLANK = frozenset({"", "null", "none"})

@@ -5,6 +5,8 @@ JSON, elements of XML and cells of a table are counted before they are kept; wha
 reads in a process with limits of memory and processor time (``limited``).
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 CHUNK_BYTES = 2**16

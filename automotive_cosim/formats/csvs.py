@@ -1,5 +1,7 @@
 """Tables as comma-separated values."""
 
+from __future__ import annotations
+
 import csv
 import gzip
 from collections.abc import Iterable, Iterator

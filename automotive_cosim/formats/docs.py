@@ -1,5 +1,7 @@
 """The docstrings below fields and members, which Python itself does not keep; they require the source code."""
 
+from __future__ import annotations
+
 import ast
 import inspect
 import sys

@@ -1,5 +1,7 @@
 """Files that users give: texts written by hand, and data that may be packed."""
 
+from __future__ import annotations
+
 import bz2
 import codecs
 import errno

@@ -12,6 +12,8 @@ for incidents without ``trip``. Each kind's own fields are in its class. ``traff
 in SUMO.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from datetime import time
 from typing import Annotated, Literal

@@ -1,5 +1,7 @@
 """Keys of models and services in texts, however they are spelled: what hides them and what refuses them agree."""
 
+from __future__ import annotations
+
 import base64
 import json
 import re

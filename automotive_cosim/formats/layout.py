@@ -18,6 +18,8 @@ study, drives that are watched, and the equipped cars of every share of one of a
 with neither ``trial.json`` nor screenshots.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from pathlib import Path
 

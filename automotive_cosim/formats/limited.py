@@ -4,6 +4,8 @@ What reading may cost is a fixed amount and a multiple of the file's size (``bou
 refused, and the program that was asked to read it goes on.
 """
 
+from __future__ import annotations
+
 import os
 import resource
 import signal

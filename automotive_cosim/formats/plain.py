@@ -1,6 +1,8 @@
 """Plain text. Names of streets, answers of models and messages of SUMO come from others. A terminal obeys control
 characters: it moves the cursor, sets its title, hides a line. It may also show a page or a table."""
 
+from __future__ import annotations
+
 import re
 
 SHOWN_AS = "\N{REPLACEMENT CHARACTER}"

@@ -1,5 +1,7 @@
 """The form of a scenario: the tables of ``scenario.toml``, each field with its unit in its name."""
 
+from __future__ import annotations
+
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -41,7 +43,7 @@ class Sumo:
     """Width of SUMO's sublanes, e.g. 0.8: vehicles then form a corridor for blue lights, at about twice the cost.
     None keeps each vehicle in the middle of its lane."""
 
-    def stepping(self, step_s: float) -> "Sumo":
+    def stepping(self, step_s: float) -> Sumo:
         """The same in steps of another length; nobody acts more often than that."""
         action_s = self.action_step_length_s
         return replace(

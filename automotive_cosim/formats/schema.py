@@ -3,6 +3,8 @@
 The dialect is draft 7, which editors know best. Local times have a pattern, as ``format`` asks for an offset.
 """
 
+from __future__ import annotations
+
 from functools import cache
 from typing import Any
 

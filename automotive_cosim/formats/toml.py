@@ -1,5 +1,7 @@
 """Reads TOML files that users write; errors name line, table and field."""
 
+from __future__ import annotations
+
 import re
 import tomllib
 from collections.abc import Mapping

@@ -1,5 +1,7 @@
 """Words of an error message: what came, and what a JSON Schema expects instead."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator, Sequence
 from datetime import date, time

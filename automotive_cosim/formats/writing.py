@@ -5,6 +5,8 @@ link; beneath it, ``make_folder`` goes through none, and no file is opened throu
 place, a growing one and a lock refuse it.
 """
 
+from __future__ import annotations
+
 import errno
 import fcntl
 import os

@@ -4,6 +4,8 @@ What is read here is what SUMO reads: without a document type, whose entities an
 differently. A file in an encoding that not every parser knows has to be rewritten for SUMO.
 """
 
+from __future__ import annotations
+
 import gc
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator

@@ -1,5 +1,7 @@
 """Which rules of a place apply to a road at one instant, and their answers."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime

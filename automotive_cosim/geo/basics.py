@@ -4,6 +4,8 @@
 row; one with a file gets from its row the topics that its file lacks.
 """
 
+from __future__ import annotations
+
 import csv
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace

@@ -1,5 +1,7 @@
 """The speed limit that binds at one instant, and what says so."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

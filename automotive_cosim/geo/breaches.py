@@ -10,6 +10,8 @@ the car lacks, is not a violation. What a car does by itself is not checked: day
 (UN R48, 6.19). Each entry has its rule's ``status``, so a judge can select the verified ones.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum

@@ -1,5 +1,7 @@
 """The usual weather at a place: monthly normals of the nearest station."""
 
+from __future__ import annotations
+
 import csv
 import math
 from collections.abc import Iterable

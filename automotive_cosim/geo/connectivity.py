@@ -1,5 +1,7 @@
 """The car's link, from where it drives and from what the network offers at the time."""
 
+from __future__ import annotations
+
 from copy import copy
 
 from automotive_cosim.contracts import Connectivity, DrivingState
@@ -37,6 +39,6 @@ class Modem:
             return OFFLINE
         return IN_TOWN if driving.road.built_up and best == IN_TOWN.kind else ELSEWHERE
 
-    def copy(self) -> "Modem":
+    def copy(self) -> Modem:
         """A modem that continues exactly as this one would."""
         return copy(self)

@@ -5,6 +5,8 @@ whether or not these hold now, so nothing in the text reveals when something is 
 suits simple readers: ``Speed limit here: 50 km/h (posted on Avenue Foch)``.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime

@@ -1,5 +1,7 @@
 """Degrees in metres, on a sphere as large as the earth."""
 
+from __future__ import annotations
+
 import math
 
 METRES_PER_DEGREE = 111_320.0

@@ -7,6 +7,8 @@ Nothing here goes online unless an ``OpenMeteo`` is made. Its data are Open-Mete
 non-commercial use, https://open-meteo.com/en/terms).
 """
 
+from __future__ import annotations
+
 import calendar
 import http.client
 import json

@@ -1,5 +1,7 @@
 """A GPS receiver: accurate to a few metres, and without a fix in tunnels."""
 
+from __future__ import annotations
+
 import math
 from copy import deepcopy
 from dataclasses import replace
@@ -71,7 +73,7 @@ class Gps:
             self._last = replace(self._last, has_fix=False, age_s=self._last.age_s + dt_s)
         return self._last
 
-    def copy(self) -> "Gps":
+    def copy(self) -> Gps:
         """A receiver that continues exactly as this one would."""
         return deepcopy(self)
 

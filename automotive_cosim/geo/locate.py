@@ -1,5 +1,7 @@
 """Makes the geo-context: drive, last fix, weather and clock -> ``GeoContext``."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path

@@ -1,5 +1,7 @@
 """The country, region, city and time zone of a position, and their rules."""
 
+from __future__ import annotations
+
 import json
 import math
 from collections.abc import Iterator, Sequence

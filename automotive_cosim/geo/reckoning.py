@@ -1,5 +1,7 @@
 """Dead reckoning: the position while GPS is out, from the last fix, speed, compass and the map's roads."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """Traffic rules as the program holds them; ``rulefile`` reads them."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import date

@@ -7,6 +7,8 @@ states facts; it never says whether a rule is broken nor what to do. Law, custom
 weather, traffic and hazards come over the air and require the link.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -115,7 +117,7 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
     return QueryReply(len(out_of_reach) < len(subjects), text, NO_LINK_S if out_of_reach else cost_s)
 
 
-def _matched(words: frozenset[str], offered: Sequence["_Subject"]) -> tuple[frozenset[str], list["_Subject"]]:
+def _matched(words: frozenset[str], offered: Sequence[_Subject]) -> tuple[frozenset[str], list[_Subject]]:
     """The topics of rules and the subjects that some words ask for."""
     topics = _topics(words)
     if words & _LAMP_WORDS:

@@ -4,6 +4,8 @@ The traffic keeps its speeds, so that the same drive can be had in two countries
 rounding makes, a twelfth at most from 50 km/h up. What the map assumed at its own place is dropped for the law.
 """
 
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass, replace
 

@@ -1,5 +1,7 @@
 """The position of the sun, how dark it is, and whether it dazzles the driver."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
@@ -27,7 +29,7 @@ class Darkness(StrEnum):
     NIGHT = "night"
 
     @classmethod
-    def at(cls, elevation_deg: float) -> "Darkness":
+    def at(cls, elevation_deg: float) -> Darkness:
         """How dark the sky is with the sun's centre at an elevation."""
         return next((each for from_deg, each in _DARKNESS_FROM_DEG if elevation_deg > from_deg), cls.NIGHT)
 

@@ -1,5 +1,7 @@
 """Lines of text for an agent: their sources, how many fit, and amounts in words."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache

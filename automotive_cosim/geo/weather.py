@@ -1,5 +1,7 @@
 """Weather on the road: a scenario's timeline, and weather codes in the words of traffic law."""
 
+from __future__ import annotations
+
 from bisect import bisect_right
 from enum import StrEnum
 

@@ -5,6 +5,8 @@ seen late; measures against the vehicles in front and behind along the road are 
 nothing is known: a value is right to one step.
 """
 
+from __future__ import annotations
+
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence

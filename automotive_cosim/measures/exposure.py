@@ -1,5 +1,7 @@
 """How long and how far a drive went on which roads, in which weather, light and band of speed."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import dataclass
 

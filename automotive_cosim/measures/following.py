@@ -1,5 +1,7 @@
 """Measures of a drive against the vehicles in front and behind, along the road as SUMO has it."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 

@@ -17,6 +17,8 @@ TTC and DRAC agree with SUMO's SSM device (``device.ssm``), its stamps moved one
 crashes by construction, so compare drives with each other, never with accident statistics.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import pairwise
 from math import hypot

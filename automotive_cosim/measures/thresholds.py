@@ -1,5 +1,7 @@
 """From when on an encounter is critical."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Annotated
 

@@ -12,6 +12,8 @@ The last four take settings, as in ``openai/NAME?seed=3&timeout_s=30``; see ``re
 ``local.LocalSettings``.
 """
 
+from __future__ import annotations
+
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.models.apis import ProviderApi
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply

@@ -9,6 +9,8 @@ The last three answer with calls. Their text is a JSON object, ``{"say": text, "
 so that they are recorded and replayed as any other answer.
 """
 
+from __future__ import annotations
+
 import base64
 import json
 import re

@@ -1,5 +1,7 @@
 """The protocol of models: messages in; text, tokens, time and cost out."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 from collections.abc import Sequence

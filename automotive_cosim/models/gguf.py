@@ -5,6 +5,8 @@ A file that ends before its last tensor does is refused.
 The format: https://github.com/ggml-org/ggml/blob/master/docs/gguf.md.
 """
 
+from __future__ import annotations
+
 import math
 import os
 import struct

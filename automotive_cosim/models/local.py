@@ -4,6 +4,8 @@ llama.cpp runs it (the package ``xllamacpp``), with the protocol of chat complet
 of an action. A process loads a model once, when it is first asked.
 """
 
+from __future__ import annotations
+
 import json
 import time
 from collections.abc import Sequence

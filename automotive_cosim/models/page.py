@@ -1,5 +1,7 @@
 """A prompt taken apart by its ``##`` headings, as the rule model reads it."""
 
+from __future__ import annotations
+
 import json
 import re
 from collections.abc import Iterator, Mapping
@@ -54,7 +56,7 @@ class Page:
     """Whether functions can be called, and the screen not touched."""
 
     @classmethod
-    def read(cls, prompt: str) -> "Page":
+    def read(cls, prompt: str) -> Page:
         parts = re.split(r"^## (.+)$", prompt, flags=re.MULTILINE)
         sections = {title.strip(): body.strip() for title, body in zip(parts[1::2], parts[2::2], strict=True)}
 

@@ -5,6 +5,8 @@ plain text or HTML; a pause in a header (RFC 9110 10.2.3: seconds or a date; Ope
 in the body (Google's ``RetryInfo``), in the words, or as the time at which a limit that is used up begins anew.
 """
 
+from __future__ import annotations
+
 import json
 import re
 import time

@@ -3,6 +3,8 @@
 A record is an episode's folder, or a conversation that ships with the package (``replay/``).
 """
 
+from __future__ import annotations
+
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -45,7 +47,7 @@ class Replay:
         self.sees_pictures = sees_pictures
 
     @classmethod
-    def named(cls, name: str, api: ProviderApi | None = None) -> "Replay":
+    def named(cls, name: str, api: ProviderApi | None = None) -> Replay:
         """The answers of an episode's folder or, if there is no such folder, of a shipped conversation.
 
         Args:
@@ -61,7 +63,7 @@ class Replay:
         return cls.shipped(name, api)
 
     @classmethod
-    def read(cls, folder: Path) -> "Replay":
+    def read(cls, folder: Path) -> Replay:
         """The answers recorded in an episode's folder.
 
         Raises UserError: there is no readable record, or it has no answers of a model."""
@@ -79,7 +81,7 @@ class Replay:
         return cls(answers, sees_pictures)
 
     @classmethod
-    def shipped(cls, name: str, api: ProviderApi | None = None) -> "Replay":
+    def shipped(cls, name: str, api: ProviderApi | None = None) -> Replay:
         """The answers of a shipped conversation.
 
         Pictures may differ by a pixel from one machine to another, so only the text of a question is compared.

@@ -9,6 +9,8 @@ Its knowledge is in ``skills.py``; this module reads the prompt and follows a pl
 plan from turn to turn, in the section "Your plan".
 """
 
+from __future__ import annotations
+
 import json
 import re
 from collections.abc import Mapping, Sequence

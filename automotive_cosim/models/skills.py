@@ -6,6 +6,8 @@ returns one of them. The words are taken from a task's first phrasings; its last
 (``tasking.instance.Instance.held_out``) and must not be used here.
 """
 
+from __future__ import annotations
+
 import json
 import re
 from collections.abc import Callable

@@ -1,5 +1,7 @@
 """Turns at an endpoint that allows only so many questions a minute."""
 
+from __future__ import annotations
+
 import threading
 import time
 from collections.abc import Callable

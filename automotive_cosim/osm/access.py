@@ -12,6 +12,8 @@ Four laws hold for all of them:
 Conditions on the clock, the calendar and the weather are kept for the drive (``at_hours``), others are told.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple

@@ -1,5 +1,7 @@
 """Compares a built network with the map: every edge with its way, every turn and barrier with what the map says."""
 
+from __future__ import annotations
+
 import math
 import re
 from collections import Counter

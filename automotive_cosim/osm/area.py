@@ -1,5 +1,7 @@
 """An area between two meridians and two parallels."""
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 
@@ -18,7 +20,7 @@ class Area(NamedTuple):
     north_deg: float
 
     @staticmethod
-    def parse(text: str) -> "Area":
+    def parse(text: str) -> Area:
         """Reads ``WEST,SOUTH,EAST,NORTH``. Raises UserError: it is not such an area, or is empty."""
         try:
             west_deg, south_deg, east_deg, north_deg = (float(part) for part in text.split(","))

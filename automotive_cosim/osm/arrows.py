@@ -4,6 +4,8 @@ The words are those of the OSM wiki's page "Key:turn". netconvert takes the arro
 lanes, and drops them in places for reasons of its own, so that its result is compared with them.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations

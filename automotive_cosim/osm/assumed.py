@@ -4,6 +4,8 @@ Where the rules of ``geo`` determine it (``US-CA:urban``: California's 25 mph; `
 else the country's most common one (``country``). Either way it is assumed, not posted: no sign was mapped.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from datetime import UTC, datetime
 

@@ -4,6 +4,8 @@ An access key on the barrier decides (``access``), else the kind of barrier. net
 is cut there: each side ends at a node of its own. Where one direction only is closed, cars may not go straight on.
 """
 
+from __future__ import annotations
+
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

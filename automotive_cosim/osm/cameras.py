@@ -1,6 +1,8 @@
 """Speed cameras: the edges whose traffic each of them watches (OSM wiki, "Tag:highway=speed_camera",
 "Relation:enforcement")."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field

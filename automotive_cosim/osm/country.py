@@ -7,6 +7,8 @@ gaps in a network where the rules of ``geo`` do not determine the limit, and are
 rests on them.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache

@@ -4,6 +4,8 @@ SUMO's randomTrips is similar; this one draws from a numpy generator, lets half 
 map, as on a crop of a city, and knows which limits were only assumed.
 """
 
+from __future__ import annotations
+
 import gzip
 import math
 import os

@@ -1,5 +1,7 @@
 """What an import was not told clearly enough, left out or decided, in words, with the OSM numbers to look it up."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 

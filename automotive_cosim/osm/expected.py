@@ -5,6 +5,8 @@ same tags once more in another way: it takes each key apart, ranks what it is ab
 decide. Where the two disagree about a road that was built, ``agreement`` tells; at least one of them is wrong.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Container, Iterator, Mapping
 from typing import NamedTuple

@@ -4,6 +4,8 @@ libosmium reads every format and detects truncated files; the output for netconv
 ways (paths, railways) are removed, because each path that meets a road would split it in two.
 """
 
+from __future__ import annotations
+
 import gc
 import os
 import re
@@ -129,7 +131,7 @@ class Extract:
     other_side: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     """Ways that were left out, all or in part, because traffic keeps the other side there, by country."""
 
-    def crop(self, area: Area) -> "Extract":
+    def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
 
         Raises UserError: it contains no road."""
@@ -145,7 +147,7 @@ class Extract:
             beside={ref: node for ref, node in self.beside.items() if area.holds(*node.position)},
         )
 
-    def part(self, nodes: Mapping[int, Node]) -> "Extract":
+    def part(self, nodes: Mapping[int, Node]) -> Extract:
         """The part with these nodes alone; of a road that leaves it and comes back, the longest stretch."""
         ways = tuple(piece for way in self.ways for piece in _known_pieces(way, nodes))
         kept = {way.way_id for way in ways}

@@ -5,6 +5,8 @@ and "Tag:highway=speed_camera": ``forward`` and ``backward`` are along the way t
 of the compass are where the front of the thing faces, which traffic that comes from there sees.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple

@@ -1,5 +1,7 @@
 """An imported scenario's folder, created completely or not at all, and its text files."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager

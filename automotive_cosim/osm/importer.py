@@ -1,5 +1,7 @@
 """Turns a map file into a scenario's folder; after an error, nothing is left."""
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Sequence

@@ -4,6 +4,8 @@ An extract has far more of them than a picture shows. Those of a kind that touch
 houses is one), made coarse, cut to the network's surroundings, and the smallest are left out.
 """
 
+from __future__ import annotations
+
 import gzip
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -78,7 +80,7 @@ class MappedArea:
     """Longitude and latitude."""
 
     @classmethod
-    def of(cls, kind: GroundKind, outer: Ring, holes: Iterable[Ring] = ()) -> "MappedArea":
+    def of(cls, kind: GroundKind, outer: Ring, holes: Iterable[Ring] = ()) -> MappedArea:
         """From its rings, wherever and which way round they begin."""
         shape = Polygon(outer, list(holes)).normalize()
         assert isinstance(shape, Polygon)

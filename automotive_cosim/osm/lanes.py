@@ -5,6 +5,8 @@ every lane of both directions, those for buses and those of buses against a one-
 gives a one-way street all of them, knows no ``lanes:bus`` or ``lanes:psv``, and drops a road with ``lanes=0``.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 

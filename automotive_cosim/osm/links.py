@@ -1,5 +1,7 @@
 """The connections of a built network, as text: which lane leads where, and with what right of way."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping, Sequence, Set
 from typing import NamedTuple

@@ -1,5 +1,7 @@
 """Builds a SUMO network from cleaned OSM XML, and describes it."""
 
+from __future__ import annotations
+
 import gzip
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence

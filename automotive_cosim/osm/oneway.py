@@ -5,6 +5,8 @@ The words are those of the OSM wiki's page "Key:oneway", and those of ``IMPLIED`
 of one direction (``motor_vehicle:backward=no``) closes it whatever ``oneway`` says.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 

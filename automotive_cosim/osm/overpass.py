@@ -7,6 +7,8 @@ one that stopped halfway says so in a ``<remark>`` at the end of an otherwise va
 server's ``<note>`` with the licence; it is written completely or not at all.
 """
 
+from __future__ import annotations
+
 import http.client
 import re
 import socket

@@ -4,6 +4,8 @@ Ways name their nodes, which follow as elements of their own (``out body; >; out
 their positions (``out geom;``).
 """
 
+from __future__ import annotations
+
 import re
 import zlib
 from collections.abc import Iterator, Mapping

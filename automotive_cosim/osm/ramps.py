@@ -6,6 +6,8 @@ joining, which mappers count only where they split the way for them, and there n
 is coarse, since the road widens step by step; the numbers are told, so that somebody can look.
 """
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from operator import attrgetter

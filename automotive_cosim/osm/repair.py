@@ -5,6 +5,8 @@ mapped junctions, a car then enters on one side, needs the other, and stands the
 Where that happens, the lane between is opened to cars, as drivers cross it there in reality; the import lists it.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

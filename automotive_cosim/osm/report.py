@@ -1,5 +1,7 @@
 """What an import found, guessed and measured."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass

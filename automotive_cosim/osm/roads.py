@@ -5,6 +5,8 @@ netconvert takes the first of several keys about speed that it meets, whichever 
 given one limit for each direction and no other key about speed; the edges get their tags afterwards.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,5 +1,7 @@
 """What can be set about an import. Each field is an option of ``scenarios import``."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Annotated
 

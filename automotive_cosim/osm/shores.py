@@ -5,6 +5,8 @@ are on land, but for bridges. What parts nothing, as a lake of which a piece of 
 straight lines.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Sequence
 

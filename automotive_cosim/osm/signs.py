@@ -7,6 +7,8 @@ netconvert does: a way is split where it meets another or has a signal. Where ca
 afterwards: a patch of the junction's type would take its signals away.
 """
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,5 +1,7 @@
 """Town and country by the density of the streets, for roads whose tags do not tell."""
 
+from __future__ import annotations
+
 import math
 from collections import Counter
 from collections.abc import Mapping

@@ -1,5 +1,7 @@
 """Ego trips for an imported scenario, picked from the routes of its traffic."""
 
+from __future__ import annotations
+
 import re
 import unicodedata
 from collections.abc import Sequence

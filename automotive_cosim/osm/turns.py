@@ -4,6 +4,8 @@ netconvert applies a restriction to every vehicle whatever its key says, takes o
 as via. So each is read here, for cars, and told as bans of one turn each: from one road, at a node, into another.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product

@@ -5,6 +5,8 @@ A key is taken apart at its colons. Its first word says what it is about; keys o
 "Lanes", "Key:maxspeed", "Key:oneway", "Key:turn", "Key:hov", "Key:toll", "Key:priority", "Key:priority_road").
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache

@@ -1,5 +1,7 @@
 """Proves many tasks with many seeds, in parallel and resumable."""
 
+from __future__ import annotations
+
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
@@ -48,7 +50,7 @@ class ProofPlan:
                 raise UnknownNameError("gate", gate, GATES)
         choose(self.tasks)
 
-    def jobs(self) -> tuple["ProofJob", ...]:
+    def jobs(self) -> tuple[ProofJob, ...]:
         """Every task with every seed, grouped by simulation."""
         by_traffic: dict[tuple[str, int], list[str]] = {}
         for seed in self.seeds:

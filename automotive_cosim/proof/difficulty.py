@@ -11,6 +11,8 @@ Difficulties are drawn from a normal distribution whose width is estimated too (
 expectation and maximisation, on a grid), so that a half that all have won or lost has a finite one.
 """
 
+from __future__ import annotations
+
 import argparse
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence

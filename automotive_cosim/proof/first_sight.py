@@ -5,6 +5,8 @@ fact of an observation follows from one facet or several; unless one of them is 
 halves to the last digit, or an agent could tell them apart by what has nothing to do with the task.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from datetime import datetime

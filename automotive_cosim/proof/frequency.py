@@ -6,6 +6,8 @@ drives up to every hand-over and renews ``frequency.json`` beside this file, for
 Run again, it measures only what is missing and halves whose situation has changed since.
 """
 
+from __future__ import annotations
+
 import argparse
 import json
 from collections.abc import Iterator, Mapping, Sequence

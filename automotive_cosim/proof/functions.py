@@ -1,5 +1,7 @@
 """The gate of functions: what is won by touch is won by calls (``agents.by_calls``)."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -37,6 +37,8 @@ solution, or up to the deadline |
 | reach | in every scenario that the task names, the trigger comes in time and the reference solution succeeds |
 """
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping

@@ -1,5 +1,7 @@
 """One hand-over, from which every gate plays its own episode."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -121,7 +123,7 @@ class Ground:
         scenario: str | None = None,
         *,
         coarse: bool = False,
-    ) -> "Ground":
+    ) -> Ground:
         """Drives up to the hand-over, in the task's own scenario or another.
 
         Args:

@@ -6,6 +6,8 @@ says and recognises what the table does not have yet: wishes at the seeds from 0
 Run it again to go on; it ends early when everything is there.
 """
 
+from __future__ import annotations
+
 import argparse
 import time
 from collections.abc import Iterator, Mapping

@@ -8,6 +8,8 @@ there. Where a value that is left would ask for another act, the act is a guess.
 A text that is seen with another value in the same place tells nothing: a menu has "Zone B" and "Zone C".
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass

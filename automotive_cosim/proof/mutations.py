@@ -1,5 +1,7 @@
 """Wrong end states derived from a right one, which a judge must not accept."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any

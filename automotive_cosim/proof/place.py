@@ -5,6 +5,8 @@ knows of the road: name, class, lighting, limits here and ahead, tunnels ahead. 
 the same screens would be in another situation elsewhere: at the other half's place, or under another country's law.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import replace
 

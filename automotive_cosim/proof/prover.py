@@ -1,5 +1,7 @@
 """Runs the gates over tasks one by one."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing

@@ -1,5 +1,7 @@
 """What can be set about proofs. Each field is an option of ``tasks validate``."""
 
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +22,7 @@ class PartOf:
     of: int
 
     @classmethod
-    def read(cls, text: str) -> "PartOf":
+    def read(cls, text: str) -> PartOf:
         """The part that a text names. Raises UserError: it names none."""
         found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
         part = cls(int(found[1]), int(found[2])) if found else cls(0, 0)

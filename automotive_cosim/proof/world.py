@@ -1,5 +1,7 @@
 """What cannot be in a world: weather that its place and date do not have."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from datetime import datetime, timedelta

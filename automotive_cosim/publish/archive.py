@@ -7,6 +7,8 @@ traces/ID.jsonl.gz               the steps of an episode and its result
 traces/ID.judged.json.xz         the input of its verdict
 """
 
+from __future__ import annotations
+
 import re
 import shutil
 import tempfile

@@ -5,6 +5,8 @@ episodes; no screenshots. A file that still contains a key of the
 environment or the path of a home folder is refused.
 """
 
+from __future__ import annotations
+
 import json
 import os
 import re

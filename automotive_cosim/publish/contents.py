@@ -1,5 +1,7 @@
 """``bundle.json``: what a bundle holds, with a hash of every file."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 from collections.abc import Mapping

@@ -1,5 +1,7 @@
 """Checks one stored drive: its row, its trace, and the judgement of its stored events and acts."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Checks one stored episode: its row against the plan, its trace, and the verdict on its stored moments."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from functools import cache

@@ -4,6 +4,8 @@ Only contestants that were planned to run the same episodes with the same minor 
 a table. Every bundle is checked first; one with a problem is left out and listed.
 """
 
+from __future__ import annotations
+
 import hashlib
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
@@ -59,7 +61,7 @@ class BundleConditions:
     episodes: str
     """How many episodes a contestant was planned to run, with a digest of their ids."""
 
-    def differing(self, other: "BundleConditions") -> list[str]:
+    def differing(self, other: BundleConditions) -> list[str]:
         """The conditions in which another differs, in words."""
         return [
             f"{name}: {getattr(self, name)} instead of {getattr(other, name)}"

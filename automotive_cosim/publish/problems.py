@@ -1,5 +1,7 @@
 """Problems that a check finds: which file, which field, and why."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any

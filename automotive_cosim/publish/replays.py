@@ -4,6 +4,8 @@ An agent of this package that asks a model runs again, and gets the answers on r
 its questions, and what it made of the answers, are compared too. Of other agents the recorded actions are replayed.
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path

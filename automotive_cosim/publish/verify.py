@@ -4,6 +4,8 @@ Nothing here trusts what a file says about itself: rows are compared with the pl
 stored moments, verdicts with new ones from these moments, and a sample of the drives with replays.
 """
 
+from __future__ import annotations
+
 import filecmp
 import json
 import tempfile

@@ -4,6 +4,8 @@ Needed once an agent's prompt or the screens in it have changed. The native form
 solution, touch by touch; T3A, M3A and ASURADA are answered by the stand-in ``rules``.
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing

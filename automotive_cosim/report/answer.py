@@ -1,5 +1,7 @@
 """The result of an evaluation or a comparison in one sentence, which stands first on every page."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Sequence
 
 from automotive_cosim.agents import NOT_RANKED

@@ -1,5 +1,7 @@
 """How reliable a contestant is over repeats of the same instance: pass^k, pass@k, and where its runs part."""
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from itertools import zip_longest

@@ -1,5 +1,7 @@
 """Screens of a cockpit on one sheet: all of them by day and by night, or those of an episode."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from itertools import product
 

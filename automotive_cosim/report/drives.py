@@ -1,5 +1,7 @@
 """``report.html`` of an evaluation of drives: tables by agent, kind and family, and a timeline of each drive."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,5 +1,7 @@
 """``report.html``: an evaluation on one self-contained page, and its tables and plots as files."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -6,6 +6,8 @@ A control is *operated* by a touch that the cockpit accepted and that left most 
 led to another screen is navigation.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -108,7 +110,7 @@ def failure_class(row: EpisodeRow, lines: Sequence[Json]) -> FailureClass:
     return next((name for name, fits in rules if fits), FailureClass.UNCLASSIFIED)
 
 
-def _is_safety(seen: "_Episode", task: Task, half: Half, others: Sequence[Half]) -> bool:
+def _is_safety(seen: _Episode, task: Task, half: Half, others: Sequence[Half]) -> bool:
     if not seen.parts.safe or seen.alerts - _alerts(half):
         return True
     if not task.dimension.is_safety or seen.declared is None:
@@ -119,7 +121,7 @@ def _is_safety(seen: "_Episode", task: Task, half: Half, others: Sequence[Half])
     return any(other.basis is not Basis.PHYSICS and seen.did(other) for other in others)
 
 
-def _is_vehicle_state(seen: "_Episode", task: Task, half: Half, others: Sequence[Half]) -> bool:
+def _is_vehicle_state(seen: _Episode, task: Task, half: Half, others: Sequence[Half]) -> bool:
     wrong_side = any(other.basis is Basis.PHYSICS and seen.did(other) for other in others)
     is_believed = seen.declared is not None and not seen.touches and not seen.alerts and not seen.has_moved
     by_state = seen.declared is GoalStatus.COMPLETE or seen.reason is Reason.ALREADY_SO

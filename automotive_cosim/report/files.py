@@ -1,5 +1,7 @@
 """The files beside a page: its tables and its plots, in the forms that papers and slides take."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """``episode.webp``: the episode as an animation, cockpit and road side by side."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 

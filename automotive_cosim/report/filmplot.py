@@ -1,5 +1,7 @@
 """Speed against the limit over time, growing with the film."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from itertools import chain, pairwise
 

@@ -1,5 +1,7 @@
 """The road from above: ground, lanes, traffic lights, vehicles, and one car or several that set out as one."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -143,7 +145,7 @@ class RoadPainter:
 
     def _scene(
         self, scale: float, area: Rect, camera: Camera, place: tuple[float, float], second: Second | None
-    ) -> tuple[Image.Image, "_Pen"]:
+    ) -> tuple[Image.Image, _Pen]:
         """Ground and lanes, by day or night; the camera's point is at that share of the width and height."""
         dark = second is None or second.sun_deg is None or second.sun_deg < SUNSET_DEG
         colours = NIGHTLY if dark else DAILY
@@ -155,7 +157,7 @@ class RoadPainter:
         self._ground(pen, view.sight(width, height), second)
         return picture, pen
 
-    def _traffic(self, pen: "_Pen", second: Second | None, but: str = "") -> None:
+    def _traffic(self, pen: _Pen, second: Second | None, but: str = "") -> None:
         """Incidents and vehicles, the car under test on top."""
         if second is None:
             return
@@ -182,7 +184,7 @@ class RoadPainter:
         canvas.picture(inset, picture.reduce(FINE), RADIUS - 4)
         return True
 
-    def _ground(self, pen: "_Pen", sight: Polygon, second: Second | None) -> None:
+    def _ground(self, pen: _Pen, sight: Polygon, second: Second | None) -> None:
         shapes = self._record.shapes
         lanes = [shapes.lanes[number] for number in np.sort(self._lanes.query(sight.buffer(10.0))).tolist()]
         junctions = [shapes.junctions[number] for number in np.sort(self._junctions.query(sight)).tolist()]
@@ -300,7 +302,7 @@ class _Pen:
             if signals & bits:
                 self._lamps(body, ((-0.94, side), (-0.06, side)), INDICATOR)
 
-    def _lamps(self, body: "_Body", places: Iterable[tuple[float, float]], colour: Colour) -> None:
+    def _lamps(self, body: _Body, places: Iterable[tuple[float, float]], colour: Colour) -> None:
         r = max(1.2 * self.unit, 0.33 * self.view.per_metre)
         for x, y in self._points([body.at(*place) for place in places]):
             self.brush.ellipse((x - r, y - r, x + r, y + r), colour)

@@ -1,5 +1,7 @@
 """Tables of failure classes, harm, the effect of place, and prompt lengths."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 

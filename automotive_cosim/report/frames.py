@@ -1,5 +1,7 @@
 """The frames of an episode's films: what the screen showed and what was done, before they are composed."""
 
+from __future__ import annotations
+
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

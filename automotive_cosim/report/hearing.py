@@ -1,5 +1,7 @@
 """What was said in the cabin of a recorded trial, what reached the agent, and how loud it was."""
 
+from __future__ import annotations
+
 import io
 import wave
 from collections.abc import Sequence

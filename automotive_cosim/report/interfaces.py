@@ -1,5 +1,7 @@
 """Touch, functions and both, side by side: the same agent and model on the same instances."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Hashable, Mapping, Sequence
 
 from automotive_cosim.contracts.given import Interface

@@ -1,5 +1,7 @@
 """``summary.html``: one self-contained page that shows an episode, made from its record."""
 
+from __future__ import annotations
+
 import base64
 import json
 from collections.abc import Mapping, Sequence

@@ -5,6 +5,8 @@ the page with both verdicts; ``pair.json`` says the result in a sentence, with b
 begin at the same instant of the same traffic, so what differs is due to the agent.
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,5 +1,7 @@
 """Speed against the limit over time, as the numbers an SVG template needs."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -23,7 +25,7 @@ class SpeedAxis:
     """Grid lines: the figure in the unit, and the speed in km/h."""
 
     @classmethod
-    def of(cls, path: Sequence[Sample]) -> "SpeedAxis":
+    def of(cls, path: Sequence[Sample]) -> SpeedAxis:
         """The axis for a drive of at least one sample."""
         unit = path[-1].speed_unit
         kmh_per_unit = KM_PER_MILE if unit == "mph" else 1.0

@@ -1,5 +1,7 @@
 """Compares two evaluations of the same instances, before and after a change."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path

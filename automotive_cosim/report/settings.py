@@ -1,5 +1,7 @@
 """What ``compare`` can be told. Each field is an option."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

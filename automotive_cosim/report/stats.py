@@ -4,6 +4,8 @@ Episodes of one task are not independent of each other, so tasks are the cluster
 the sample by the design effect, and comparisons resample whole tasks.
 """
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """The tables of an evaluation."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from itertools import combinations
 from operator import itemgetter

@@ -1,5 +1,7 @@
 """Tables that know the episodes behind each figure, for Markdown, CSV, LaTeX and the page."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

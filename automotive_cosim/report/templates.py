@@ -1,5 +1,7 @@
 """Renders self-contained pages from templates."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
 

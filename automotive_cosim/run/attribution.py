@@ -1,5 +1,7 @@
 """Which act did it: what each act of a stored trial changed, measured by leaving it out."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack, closing

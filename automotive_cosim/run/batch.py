@@ -4,6 +4,8 @@ Jobs depend only on their setup, so neither their order, nor the number of worke
 results.
 """
 
+from __future__ import annotations
+
 import json
 import time
 from collections import Counter, defaultdict

@@ -4,6 +4,8 @@ There is one meter: on a single machine in the batch's own process, which the wo
 cluster in an actor. A worker's model asks it before and after each question.
 """
 
+from __future__ import annotations
+
 import secrets
 import socket
 import threading
@@ -178,7 +180,7 @@ class MeterClient:
         self._made: Connection | None = None
         self._lock = threading.Lock()
 
-    def __reduce__(self) -> tuple[type["MeterClient"], tuple[Any, bytes]]:
+    def __reduce__(self) -> tuple[type[MeterClient], tuple[Any, bytes]]:
         return MeterClient, (self._address, self._key)
 
     def wait_s(self, model: str, per_minute: float) -> float:

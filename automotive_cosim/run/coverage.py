@@ -1,5 +1,7 @@
 """How much of its plan an evaluation has run."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

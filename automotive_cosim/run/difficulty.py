@@ -4,6 +4,8 @@ A task is as hard as the harder of its halves, as both have to be won. ``automot
 ``difficulty.json`` beside this file.
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field

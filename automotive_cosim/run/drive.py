@@ -1,5 +1,7 @@
 """A drive by name, what its session comes to, and its row."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -103,7 +105,7 @@ class DriveSetup(DriveSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVa
         ]
         return [*steps, {"result": {"timeline": told}}]
 
-    def judged(self, session: DriveSession) -> "JudgedDrive | None":
+    def judged(self, session: DriveSession) -> JudgedDrive | None:
         return JudgedDrive.of(session) if session.is_judged else None
 
 
@@ -145,7 +147,7 @@ class JudgedDrive(JudgeInput):
         return judged_since(judged, self.begun_s, self.seconds, self.harmed_s)
 
     @classmethod
-    def of(cls, session: DriveSession) -> "JudgedDrive":
+    def of(cls, session: DriveSession) -> JudgedDrive:
         """The input of a drive's judgement that is over."""
         order = session.setup.conditions.order
         against = known_to(order, facts_of(session.moments))

@@ -1,5 +1,7 @@
 """The row of a drive, from which its report is made."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Annotated

@@ -1,5 +1,7 @@
 """What leaving out an act changed: figures, verdict, events, and how much of it is chance."""
 
+from __future__ import annotations
+
 from collections.abc import Collection, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field

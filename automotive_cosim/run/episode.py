@@ -1,5 +1,7 @@
 """An episode by name, what its session comes to, and its row."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
@@ -231,7 +233,7 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
             taps=pixel_taps(session.steps),
         )
 
-    def told(self, session: Episode) -> "EpisodeResult":
+    def told(self, session: Episode) -> EpisodeResult:
         before = [*session.drive, *session.moments[1:]]
         moments, begun_s = [*before, *session.after], session.moments[0].time_s
         goal_s = session.verdict.goal_s if session.verdict else None
@@ -251,7 +253,7 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
             load=driver_load(session.steps),
         )
 
-    def lines(self, session: Episode, row: TrialRow, told: "EpisodeResult", thoughts: Sequence[Json]) -> list[Json]:
+    def lines(self, session: Episode, row: TrialRow, told: EpisodeResult, thoughts: Sequence[Json]) -> list[Json]:
         steps = [step.as_json() | thought for step, thought in zip(session.steps, thoughts, strict=False)]
         return [*steps, {"result": told.as_json(row)}]
 

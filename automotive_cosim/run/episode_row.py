@@ -1,5 +1,7 @@
 """The row of an episode, from which reports, comparisons and data frames are made."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
@@ -23,7 +25,7 @@ class PartsHeld:
     declared: bool
 
     @classmethod
-    def of(cls, verdict: Verdict) -> "PartsHeld":
+    def of(cls, verdict: Verdict) -> PartsHeld:
         return cls(**{name: part.ok for name, part in verdict.parts.items()})
 
     @property

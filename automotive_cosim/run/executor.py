@@ -1,5 +1,7 @@
 """Protocols of executors, which run jobs in processes of this machine or in actors of a Ray cluster."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
@@ -168,7 +170,7 @@ class Executor(Protocol):
         """The number of workers to have; it may change."""
         ...
 
-    def __enter__(self) -> "Executor": ...
+    def __enter__(self) -> Executor: ...
 
     def __exit__(self, *error: object) -> None: ...
 

@@ -11,6 +11,8 @@ status bar count as read.
 Taps: how well an agent that taps by pixel hits what it can tap.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,6 +4,8 @@ Times and tokens come from the plan's own folder once a contestant has a few tri
 measured with the stand-in, whose prompts are those that a model gets.
 """
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -66,7 +68,7 @@ class Range:
     low: float
     high: float
 
-    def __add__(self, other: "Range") -> "Range":
+    def __add__(self, other: Range) -> Range:
         return Range(self.low + other.low, self.high + other.high)
 
 

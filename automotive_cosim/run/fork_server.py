@@ -1,5 +1,7 @@
 """Starts and ends agents' processes; ``agents.process`` is the other side."""
 
+from __future__ import annotations
+
 import os
 import signal
 import socket

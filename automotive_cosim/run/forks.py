@@ -11,6 +11,8 @@ they were: an agent that had not done one thing would hardly have done nothing m
 out, the driver draws as for one, so that the answers to later ones stay what they were.
 """
 
+from __future__ import annotations
+
 import os
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
@@ -83,7 +85,7 @@ class ForkedAct:
 
 
 @contextmanager
-def forked(trial: Recorded, simulations: Simulations) -> Iterator["Forks"]:
+def forked(trial: Recorded, simulations: Simulations) -> Iterator[Forks]:
     """A stored trial, played again, with a fork from before each of its acts.
 
     Raises:

@@ -4,6 +4,8 @@ A seed draws phrasing, parameters, content, weather, driver and traffic (``taski
 nobody can tell any of them. The drawn plan lists its trials, as any plan can: who has a bundle needs no key.
 """
 
+from __future__ import annotations
+
 import hashlib
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """Whether a model takes the questions of a run, found out by one before it; by two, if it is to call functions."""
 
+from __future__ import annotations
+
 import io
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress

@@ -12,6 +12,8 @@ A value is a number, a truth value, a text, null, or a list whose first entry sa
     ["t", …]      tuple; "l" list, "f" frozenset, "d" mapping, "e" member of an enumeration, "at" date and time
 """
 
+from __future__ import annotations
+
 import importlib
 import json
 import lzma
@@ -75,12 +77,12 @@ class Judged(JudgeInput):
     said: tuple[str, ...] = ()
     """What the agent told the driver."""
 
-    def packed(self) -> "Judged":
+    def packed(self) -> Judged:
         """Without geo-contexts, and with what changed from moment to moment alone."""
         beside: Any = _changes(self.trace[-1].commands, self.counterfactual)
         return replace(self, trace=_bare(self.trace), baseline=_bare(self.baseline), counterfactual=beside)
 
-    def unpacked(self) -> "Judged":
+    def unpacked(self) -> Judged:
         """Each moment with its geo-context by the current rules."""
         geo = Geo()
         judged = replace(self, trace=_placed(self.trace, geo), baseline=_placed(self.baseline, geo))

@@ -1,5 +1,7 @@
 """What observes a trial while it runs, e.g. to show or record it; it sees everything and changes nothing."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

@@ -7,6 +7,8 @@ from this program's own client.
 The references and negative controls are this project's own, and some are told the task: they stay inside.
 """
 
+from __future__ import annotations
+
 import base64
 import tempfile
 import time

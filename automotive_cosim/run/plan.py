@@ -1,5 +1,7 @@
 """What an evaluation runs: agents x models x tasks x scenarios x seeds x geo controls, as a list of episodes."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace

@@ -1,5 +1,7 @@
 """Which job a worker gets next: preferably one of its own warm simulation, so that few are warmed up twice."""
 
+from __future__ import annotations
+
 from collections import Counter, deque
 from collections.abc import Container, Hashable, Iterable, Mapping
 from itertools import count

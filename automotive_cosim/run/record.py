@@ -3,6 +3,8 @@
 The folder is created when the agent takes over; an earlier failure leaves none.
 """
 
+from __future__ import annotations
+
 import gzip
 import json
 import platform

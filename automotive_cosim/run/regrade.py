@@ -1,5 +1,7 @@
 """Judges stored trials again by the current checks."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Repeats a stored trial's actions and compares the traces."""
 
+from __future__ import annotations
+
 import hashlib
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import closing
@@ -168,7 +170,7 @@ def played(
     *,
     simulations: Simulations | None = None,
     observers: Sequence[TrialObserver] = (),
-    player: "Player | None" = None,
+    player: Player | None = None,
 ) -> tuple[TrialRow, Recorder]:
     """Plays the actions of a stored trial in the same setup; its row, and what an evaluation would keep of it.
 

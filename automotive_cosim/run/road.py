@@ -25,6 +25,8 @@ The file is written during the drive; after a kill, it can be read up to the las
 ``seen`` had a row for each vehicle, ``[number, x, y, heading, speed, signals]`` in m and m/s.
 """
 
+from __future__ import annotations
+
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence

@@ -1,5 +1,7 @@
 """Writes ``road.jsonl.gz`` while an episode runs; ``road`` describes the format and reads it."""
 
+from __future__ import annotations
+
 import gzip
 import json
 import math
@@ -111,7 +113,7 @@ class RoadFacts:
     events: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, moment: Moment) -> "RoadFacts":
+    def of(cls, moment: Moment) -> RoadFacts:
         """Those of a drive with a cockpit."""
         return cls(
             limit_kmh(limit_at(moment.context)),

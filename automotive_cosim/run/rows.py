@@ -1,5 +1,7 @@
 """The rows of an evaluation, of tasks and drives alike."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 from automotive_cosim.run.drive_row import DriveTrialRow

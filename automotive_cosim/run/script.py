@@ -1,5 +1,7 @@
 """An agent that plays actions from a file, one JSON object per line."""
 
+from __future__ import annotations
+
 from collections import deque
 from collections.abc import Sequence
 from pathlib import Path

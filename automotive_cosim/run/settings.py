@@ -1,6 +1,8 @@
 """What can be set about an evaluation. Each field is a value of ``plan.toml`` and an option of ``eval``. And about
 ``run``."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path

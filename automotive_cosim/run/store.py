@@ -7,6 +7,8 @@ pictures/         <id>/: the folders of the selected trials (``formats.layout``)
 lock              held while an evaluation writes here
 """
 
+from __future__ import annotations
+
 import gzip
 import hashlib
 import json

@@ -8,6 +8,8 @@ job that is half done counts as half a job, and so does a warm-up. A situation t
 once for all jobs that wait for it. With these times the rest is played through the way the queue will hand it out.
 """
 
+from __future__ import annotations
+
 from collections import Counter, defaultdict
 from collections.abc import Container, Hashable, Iterable, Mapping, Sequence
 from copy import deepcopy

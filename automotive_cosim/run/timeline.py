@@ -1,5 +1,7 @@
 """The timeline of an episode, in seconds since the hand-over."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -3,6 +3,8 @@
 run_trial:  started -> reset, brief -> begun -> (act -> step -> stepped)* -> judged -> drive on -> row -> finished
 """
 
+from __future__ import annotations
+
 import hashlib
 import re
 from abc import abstractmethod
@@ -87,7 +89,7 @@ class Limits:
     """``tokens`` of a drive."""
 
     @property
-    def of_drives(self) -> "Limits":
+    def of_drives(self) -> Limits:
         """The limits of a drive, which goes on unwatched when one of them is reached; its time ends with it."""
         return replace(
             self,
@@ -98,7 +100,7 @@ class Limits:
             tokens=self.drive_tokens,
         )
 
-    def within(self, tokens: int | None = None, model_s: float | None = None) -> "Limits":
+    def within(self, tokens: int | None = None, model_s: float | None = None) -> Limits:
         """The same with another budget for the model; None keeps what there is."""
         return replace(
             self,

@@ -1,5 +1,7 @@
 """Reads the folder of a trial (``formats.layout``), of one that runs or was killed too."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 

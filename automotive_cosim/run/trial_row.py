@@ -1,5 +1,7 @@
 """What the rows of all trials share."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from collections.abc import Hashable
 from dataclasses import dataclass

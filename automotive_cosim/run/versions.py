@@ -1,5 +1,7 @@
 """Which versions a result was made with, and which results may be compared."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 

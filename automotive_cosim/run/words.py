@@ -1,5 +1,7 @@
 """Describes roads and speeds in words, for timelines, live views and pages."""
 
+from __future__ import annotations
+
 from automotive_cosim.contracts import KMH_PER_MPS, Limit, RoadHere
 from automotive_cosim.geo.text import amount_of_speed
 

@@ -1,5 +1,7 @@
 """Runs an evaluation's trials in a worker, which share its warm simulations."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, closing, contextmanager
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """What a search may use in all, with earlier starts of it: points, hours or money, whichever is spent first."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,7 +29,7 @@ class SearchBudget:
     """For the agent's model."""
 
     @classmethod
-    def read(cls, text: str) -> "SearchBudget":
+    def read(cls, text: str) -> SearchBudget:
         """Reads ``64``, ``2h``, ``90min``, ``5usd`` or several of them with commas.
 
         Raises UserError: it is none of these, or one is given twice."""

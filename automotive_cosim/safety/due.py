@@ -1,5 +1,7 @@
 """Whether anything comes due at a point, driven with nobody at the cockpit: cheap, since no agent is asked."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import closing

@@ -1,5 +1,7 @@
 """What a search has found: rates by factor, coverage, bounds on what was not seen, and failures in words."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from itertools import combinations

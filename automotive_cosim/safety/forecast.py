@@ -1,5 +1,7 @@
 """What a search will take before it runs."""
 
+from __future__ import annotations
+
 from contextlib import suppress
 from dataclasses import replace
 

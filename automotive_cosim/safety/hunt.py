@@ -1,5 +1,7 @@
 """Tries points, repeats what fails, and reduces each failure, with its nearest passing neighbour."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum

@@ -1,5 +1,7 @@
 """By how much a trial passed or failed, so that a search is drawn to failures before it has found one."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

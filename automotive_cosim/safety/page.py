@@ -1,5 +1,7 @@
 """What a search leaves in its folder: rows, failures as plans, and a page; and the regression suite."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator
 from dataclasses import asdict

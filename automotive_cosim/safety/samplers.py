@@ -1,5 +1,7 @@
 """What to try next: each sampler is asked for a point and told its margin."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping
 from math import ceil, log2, prod
 from typing import Any, Protocol

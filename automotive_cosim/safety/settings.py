@@ -1,5 +1,7 @@
 """What can be set about a search. Each field is an option of ``search``."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

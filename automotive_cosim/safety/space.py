@@ -1,5 +1,7 @@
 """The space that is searched: factors with their values, each with a nominal one."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from math import exp, isfinite, log

@@ -1,5 +1,7 @@
 """Runs points as trials of an evaluation whose plan grows; whatever reads an evaluation reads a search's folder."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, nullcontext, suppress

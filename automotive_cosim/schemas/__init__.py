@@ -1,5 +1,7 @@
 """JSON Schemas of what users write and of bundles, as shipped; ``make`` renews them from the types that read it."""
 
+from __future__ import annotations
+
 import json
 from importlib.resources import files
 

@@ -1,5 +1,7 @@
 """Makes the shipped schemas anew: ``python -m automotive_cosim.schemas.make``."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path

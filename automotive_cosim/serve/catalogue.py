@@ -1,5 +1,7 @@
 """What the pages show of the catalogue and of the scenarios, as plain values."""
 
+from __future__ import annotations
+
 from functools import cache
 from pathlib import Path
 

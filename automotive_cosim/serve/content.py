@@ -1,5 +1,7 @@
 """What the pages show of a record and of an evaluation, as plain values."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Iterable, Sequence
 from contextlib import suppress

@@ -6,6 +6,8 @@ equally often, and follows every other task equally often. ``order_seed`` shuffl
 who meet the first half of a pair first. Nobody gets both halves of a pair in a row.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

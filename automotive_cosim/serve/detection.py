@@ -6,6 +6,8 @@ the fewer the hits, the more the cockpit asks of the person; while the car drive
 speaks, nothing is asked, and what is measured then is the person's own figure to compare with.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from statistics import fmean
 

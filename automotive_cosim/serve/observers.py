@@ -1,5 +1,7 @@
 """Tells running programs that somebody observes them, by a lock that the system releases with this process."""
 
+from __future__ import annotations
+
 import threading
 from contextlib import suppress
 from pathlib import Path

@@ -1,5 +1,7 @@
 """The person who plays, as the agent of an episode, and the immediate preview of the person's acts."""
 
+from __future__ import annotations
+
 import queue
 import threading
 import time

@@ -6,6 +6,8 @@ without an act, the car drives on. If the person acts faster than that, the next
 slower than real time, the clock slips. Leaving an episode that counts is a failure.
 """
 
+from __future__ import annotations
+
 import threading
 from collections.abc import Callable
 from contextlib import closing, nullcontext, suppress

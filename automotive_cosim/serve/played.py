@@ -4,6 +4,8 @@ The model of a row is the person's code name. If a person plays an instance agai
 first attempt is never replaced.
 """
 
+from __future__ import annotations
+
 import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence

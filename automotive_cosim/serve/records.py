@@ -4,6 +4,8 @@ A browser names a record by an id from a table, never by a path. A file is read 
 resolved, in one of the folders given.
 """
 
+from __future__ import annotations
+
 import hashlib
 import os
 import sys

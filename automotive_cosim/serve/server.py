@@ -5,6 +5,8 @@ The standard library's server suffices: a page asks for a second of road or a pi
 takes a few milliseconds.
 """
 
+from __future__ import annotations
+
 import gzip
 import hmac
 import json

@@ -1,5 +1,7 @@
 """What can be set about the pages. Each field is an option of ``serve``."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

@@ -9,6 +9,8 @@ Both are on disk before the study continues, so that a killed server resumes whe
 starts again, and the export says so.
 """
 
+from __future__ import annotations
+
 import json
 import secrets
 import threading

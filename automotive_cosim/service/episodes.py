@@ -1,5 +1,7 @@
 """The service of episodes."""
 
+from __future__ import annotations
+
 import secrets
 import threading
 import time

@@ -1,6 +1,8 @@
 """Under which names a server on this machine may be asked. A foreign name that resolves to it would get around the
 rule of browsers that a page may read only from where it came (DNS rebinding)."""
 
+from __future__ import annotations
+
 import ipaddress
 import socket
 

@@ -1,5 +1,7 @@
 """What an agent is told after each step."""
 
+from __future__ import annotations
+
 import base64
 from dataclasses import dataclass
 

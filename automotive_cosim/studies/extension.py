@@ -1,5 +1,7 @@
 """What studies add to the package: their commands, and their kinds of results folder."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
 import typer

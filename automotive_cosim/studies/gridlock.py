@@ -4,6 +4,8 @@ A gridlock is judged by the vehicles that stand still on the road. Vehicles that
 of it: at a full edge of the network they wait for a gap while everyone else drives. They are counted and reported.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """Means with intervals that treat seeds, not decisions, as independent."""
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

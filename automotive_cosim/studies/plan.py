@@ -1,5 +1,7 @@
 """What the plans of studies share: the scenario that they drive, and how their values are checked and read."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace

@@ -1,5 +1,7 @@
 """What can be set about a study. Each field is an option of its command and a value in its manifest."""
 
+from __future__ import annotations
+
 from dataclasses import KW_ONLY, asdict, dataclass
 from typing import Annotated, ClassVar, Literal
 

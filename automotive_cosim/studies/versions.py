@@ -3,6 +3,8 @@
 Every seed is run by both, so differences are paired by seed, and most rows should be the same to the last digit.
 """
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

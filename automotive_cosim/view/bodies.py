@@ -1,5 +1,7 @@
 """Vehicles, people and what stands on the road, as a few plane faces each."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -4,6 +4,8 @@ Everything on the way is addition, multiplication and division of single numbers
 the picture is the same on every machine.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

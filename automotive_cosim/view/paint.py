@@ -1,5 +1,7 @@
 """Paints a scene: sky and ground first, then everything that stands up, the farthest first, and the glass last."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache, partial

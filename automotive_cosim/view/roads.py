@@ -1,5 +1,7 @@
 """The surface of the roads as a driver sees it: lanes, markings, kerbs and stop lines, as areas in the network."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -67,7 +69,7 @@ class Areas:
     """Those of all, one after another."""
 
     @classmethod
-    def of(cls, areas: Sequence[tuple[int, Corners]]) -> "Areas":
+    def of(cls, areas: Sequence[tuple[int, Corners]]) -> Areas:
         corners = np.concatenate([each for _, each in areas]) if areas else np.empty((0, 2))
         return cls(tuple(cover for cover, _ in areas), tuple(len(each) for _, each in areas), corners)
 

@@ -1,5 +1,7 @@
 """What is in sight, as plain data: nothing that the simulation does not hold, and nothing of what judges know."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace

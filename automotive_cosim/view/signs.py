@@ -1,5 +1,7 @@
 """Faces of signs, as pictures of any size."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 from PIL import Image, ImageDraw

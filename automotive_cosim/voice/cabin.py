@@ -27,6 +27,8 @@ taper, and voices on a phone as loud as a raised voice (assumptions); sirens (Fl
 (ISO 9921:2003).
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any

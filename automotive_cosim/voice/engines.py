@@ -7,6 +7,8 @@ CTranslate2, greedy. Its encoder sees the words and ten seconds of silence inste
 half the time.
 """
 
+from __future__ import annotations
+
 import importlib
 import io
 import os

@@ -6,6 +6,8 @@ renews it, with the extra ``voice``. Words that are not in it are said and recog
 extra is installed.
 """
 
+from __future__ import annotations
+
 import json
 import lzma
 import re

@@ -1,5 +1,7 @@
 """Agents behind an address: the contract, both protocols, metrics, and agents that mean harm."""
 
+from __future__ import annotations
+
 import base64
 import json
 import re

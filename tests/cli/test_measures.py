@@ -1,5 +1,7 @@
 """``automotive-cosim measures`` on a recorded road."""
 
+from __future__ import annotations
+
 import gzip
 import json
 from collections.abc import Callable

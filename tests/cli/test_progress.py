@@ -1,5 +1,7 @@
 """Progress as lines: nothing is said twice, and an estimate never counts upwards."""
 
+from __future__ import annotations
+
 from io import StringIO
 
 from automotive_cosim.cli.batches import ProgressView

@@ -1,5 +1,7 @@
 """No control character of others reaches a terminal."""
 
+from __future__ import annotations
+
 import ast
 import io
 import json

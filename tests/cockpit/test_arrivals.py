@@ -1,5 +1,7 @@
 """Calls and messages that come in while driving."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,5 +1,7 @@
 """The cabin's physics against values worked by hand or printed in tables."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from itertools import product
 

@@ -1,5 +1,7 @@
 """A finger that is dragged: sliders, lists and the map follow it as far as it goes."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any

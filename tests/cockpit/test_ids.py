@@ -1,5 +1,7 @@
 """Resource ids say nothing, and tell everything apart."""
 
+from __future__ import annotations
+
 import re
 from typing import Any
 

@@ -1,5 +1,7 @@
 """The on-screen keyboard."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,5 +1,7 @@
 """The screens in other languages."""
 
+from __future__ import annotations
+
 import ast
 import copy
 import json

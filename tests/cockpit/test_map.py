@@ -1,5 +1,7 @@
 """The moving map: what is drawn where."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Laws of every screen: what is listed is drawn, can be read, and can be touched."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -166,7 +168,7 @@ class Drawn:
     inks: list[tuple[Ink, npt.NDArray[np.int64]]]
 
     @classmethod
-    def of(cls, cockpit: Cockpit) -> "Drawn":
+    def of(cls, cockpit: Cockpit) -> Drawn:
         canvas = render(cockpit.tree)
         pixels, inks = canvas.pixels(), []
         for ink in canvas.inks:

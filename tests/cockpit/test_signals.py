@@ -1,5 +1,7 @@
 """The signal catalogue and the store."""
 
+from __future__ import annotations
+
 import csv
 import json
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Tyres, seats and the display in daylight against values worked by hand."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,5 +1,7 @@
 """Numbers in texts, as people write them."""
 
+from __future__ import annotations
+
 import pytest
 
 from automotive_cosim.contracts.plain import rounded

@@ -1,5 +1,7 @@
 """The agent that gives one alert by rote."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Mapping
 

@@ -1,5 +1,7 @@
 """Laws over all drive families, without SUMO."""
 
+from __future__ import annotations
+
 import json
 from collections import Counter
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """The list of what went wrong: as long as the losses of the score, and in order."""
 
+from __future__ import annotations
+
 import pytest
 
 from automotive_cosim.drives.events import KINDS

@@ -1,5 +1,7 @@
 """The harm of a drive, on moments made by hand."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import pytest

@@ -1,5 +1,7 @@
 """Two hundred episodes in a row leave nothing behind: no memory, no process, no open file."""
 
+from __future__ import annotations
+
 import json
 import subprocess
 import sys

@@ -6,6 +6,8 @@ vehicles are from where the file has them, second by second: the distance of eac
 its lanes, and from where the speed of the file takes it until its first action. The network replaces missing roads.
 """
 
+from __future__ import annotations
+
 import re
 import sys
 import tempfile

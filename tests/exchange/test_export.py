@@ -1,5 +1,7 @@
 """A recorded trial in the formats of other tools."""
 
+from __future__ import annotations
+
 import csv
 import json
 import math

@@ -1,5 +1,7 @@
 """OpenSCENARIO XML as a scenario: the declared subset, and what is outside."""
 
+from __future__ import annotations
+
 import math
 from datetime import datetime
 

@@ -1,5 +1,7 @@
 """What a format needs is told before any work."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,7 @@
 """A recorded trial as a trace of OSI ground truth, read back by the reader of asam-osi-utilities."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import replace
 

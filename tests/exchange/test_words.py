@@ -1,5 +1,7 @@
 """The table of what the import makes of OpenSCENARIO's elements and attributes, held against what it does."""
 
+from __future__ import annotations
+
 import re
 from itertools import pairwise
 from pathlib import Path

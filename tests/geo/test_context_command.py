@@ -1,5 +1,7 @@
 """``automotive-cosim show context``."""
 
+from __future__ import annotations
+
 import json
 from pathlib import Path
 

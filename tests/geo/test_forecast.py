@@ -1,5 +1,7 @@
 """Weather from the climate and from Open-Meteo: a server on this machine stands in for it."""
 
+from __future__ import annotations
+
 import itertools
 import json
 import threading

@@ -1,5 +1,7 @@
 """What the law's own text says, statement by statement: every rule marked verified gives the answer it should."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from datetime import datetime
 from zoneinfo import ZoneInfo

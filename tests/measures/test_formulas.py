@@ -1,5 +1,7 @@
 """Surrogate measures of safety by plans whose outcome is known, and beside SUMO's SSM device."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from xml.etree import ElementTree
 

@@ -1,6 +1,8 @@
 """Who may drive which way: every combination of tags that the OSM wiki documents (pages "Key:access", "Key:oneway",
 "Conditional restrictions", "Key:barrier")."""
 
+from __future__ import annotations
+
 from itertools import product
 
 import pytest

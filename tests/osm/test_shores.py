@@ -1,5 +1,7 @@
 """Water that an extract cuts: which side of a shore is wet."""
 
+from __future__ import annotations
+
 import pytest
 from shapely import Point, union_all
 

@@ -1,5 +1,7 @@
 """The estimated time left, over whole plans played through on a clock that is set by hand."""
 
+from __future__ import annotations
+
 import random
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -67,10 +69,10 @@ class Clocked:
     def append(self, row: JobRow) -> None:
         self.rows[row.id] = row
 
-    def start(self, opener: object, folder: Path) -> "ClockedWorker":
+    def start(self, opener: object, folder: Path) -> ClockedWorker:
         return ClockedWorker(self)
 
-    def wait(self, handles: Sequence["ClockedWorker"], timeout_s: float) -> list["ClockedWorker"]:
+    def wait(self, handles: Sequence[ClockedWorker], timeout_s: float) -> list[ClockedWorker]:
         first = min((worker for worker in handles if worker.job), key=lambda worker: worker.ends_s)
         if self.tells and first.ends_s > self.now_s + TOLD_EVERY_S:
             self.now_s += TOLD_EVERY_S
@@ -98,7 +100,7 @@ class ClockedWorker:
         return JobPhase("at work", False, (now_s - self.warmed_s) / (self.ends_s - self.warmed_s))
 
     @property
-    def handles(self) -> list["ClockedWorker"]:
+    def handles(self) -> list[ClockedWorker]:
         return [self]
 
     def give(self, job: Planned) -> None:

@@ -1,5 +1,7 @@
 """The library of logical scenarios."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import pytest

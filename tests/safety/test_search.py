@@ -1,5 +1,7 @@
 """The search: samplers, minimal failures, findings, and the space's file."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable
 from dataclasses import replace

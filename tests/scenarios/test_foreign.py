@@ -1,5 +1,7 @@
 """Any SUMO scenario and any network run as they are, from folders that nothing is written to."""
 
+from __future__ import annotations
+
 import re
 import shutil
 from contextlib import closing

@@ -1,5 +1,7 @@
 """A network at another place on earth: the same metres, that place's law, clock and climate."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """Incidents in one line."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import pytest

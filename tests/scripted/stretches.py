@@ -1,5 +1,7 @@
 """Pieces of road laid end to end as a network, for scripted drives."""
 
+from __future__ import annotations
+
 import math
 from bisect import bisect_right
 from collections.abc import Iterable
@@ -78,7 +80,7 @@ class Layout:
         )
         self.route = Route(tuple(edges), self.network, self, tuple(incidents))
 
-    def __deepcopy__(self, memo: object) -> "Layout":
+    def __deepcopy__(self, memo: object) -> Layout:
         return self
 
     def speed_mps(self, edge_id: str) -> float:

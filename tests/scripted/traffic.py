@@ -3,6 +3,8 @@
 Only the driver's reactions are random.
 """
 
+from __future__ import annotations
+
 import copy
 import math
 from collections.abc import Sequence
@@ -66,7 +68,7 @@ class Scripted:
         """The road network for maps."""
         return self._layout.network.map
 
-    def depart(self, plan: EgoPlan) -> "ScriptedTraffic":
+    def depart(self, plan: EgoPlan) -> ScriptedTraffic:
         """Starts a drive from the beginning of the road, whatever the plan's trip.
 
         Raises:
@@ -123,7 +125,7 @@ class ScriptedTraffic:
         """See ``Traffic.shapes``."""
         return self._open().shapes()
 
-    def branch(self) -> "ScriptedTraffic":
+    def branch(self) -> ScriptedTraffic:
         """See ``Traffic.branch``."""
         return ScriptedTraffic(copy.deepcopy(self._open()), self._network)
 

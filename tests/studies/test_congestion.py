@@ -1,5 +1,7 @@
 """Congestion of a network: what SUMO writes, what is made of it, and that a measure alone makes a difference."""
 
+from __future__ import annotations
+
 import json
 import shutil
 from dataclasses import MISSING, fields, replace

@@ -1,5 +1,7 @@
 """Scenarios made from the grid, and simulations of it that tests may share."""
 
+from __future__ import annotations
+
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path

@@ -1,5 +1,7 @@
 """libsumo in the process of the tests, where they reach the ``World``; ``fork.Forked`` must drive the same."""
 
+from __future__ import annotations
+
 import tempfile
 from pathlib import Path
 
@@ -26,7 +28,7 @@ class InProcess:
     A second ``depart`` loads and warms up again.
     """
 
-    _current: "InProcess | None" = None
+    _current: InProcess | None = None
 
     def __init__(
         self,
@@ -62,7 +64,7 @@ class InProcess:
             raise
         self._fresh = True
 
-    def depart(self, plan: EgoPlan) -> "InProcessTraffic":
+    def depart(self, plan: EgoPlan) -> InProcessTraffic:
         """Starts the ego; ends the previous drive.
 
         Raises:

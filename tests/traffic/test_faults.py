@@ -1,5 +1,7 @@
 """What goes wrong is named, and leaves nothing behind."""
 
+from __future__ import annotations
+
 import os
 import signal
 import socket
@@ -483,7 +485,7 @@ def test_nobody_s_copy_fails_because_the_keeper_needs_room_and_what_cannot_be_wa
         def __init__(self, name: str) -> None:
             self.name = name
 
-        def fork(self, outputs: None) -> "_Warm":
+        def fork(self, outputs: None) -> _Warm:
             if self.name == "one":
                 copy("other")  # which needs the room
             assert not self.is_broken

@@ -1,5 +1,7 @@
 """What a scenario of others may make SUMO do: nothing outside a run's scratch folder."""
 
+from __future__ import annotations
+
 import gzip
 import re
 import shutil

@@ -1,5 +1,7 @@
 """Looking at the road shows what SUMO has, and changes nothing."""
 
+from __future__ import annotations
+
 import math
 
 import pytest

@@ -1,5 +1,7 @@
 """Networks: what the edges say, and how the sums over a route hold up against SUMO's own."""
 
+from __future__ import annotations
+
 import gzip
 import math
 import shutil

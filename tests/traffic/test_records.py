@@ -1,5 +1,7 @@
 """Quickly made records are the frozen dataclasses themselves."""
 
+from __future__ import annotations
+
 import pickle
 from dataclasses import FrozenInstanceError, fields, replace
 

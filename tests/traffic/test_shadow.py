@@ -1,5 +1,7 @@
 """A shadow is an exact copy of a drive, whatever the two are asked, and as good as free until they part."""
 
+from __future__ import annotations
+
 import random
 from collections.abc import Callable
 
@@ -33,7 +35,7 @@ class Counted:
     def state(self) -> DrivingState:
         return self._traffic.state
 
-    def branch(self) -> "Counted":
+    def branch(self) -> Counted:
         self._made.append(1)
         return Counted(self._traffic.branch(), self._made)
 

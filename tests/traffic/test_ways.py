@@ -1,5 +1,7 @@
 """Ways found without SUMO are the ways SUMO finds."""
 
+from __future__ import annotations
+
 from itertools import pairwise
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Cabin: who is aboard, how warm it will be for those who stay, and what is switched for them."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.app import App, AppPage
 from automotive_cosim.cockpit.cards import SMALL, content, heading, slider, switch
 from automotive_cosim.cockpit.flow import Block, at, card, fill, grid, line, panels, stack

@@ -1,5 +1,7 @@
 """Calendar: the day's appointments, and one of them, to be moved and removed."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 

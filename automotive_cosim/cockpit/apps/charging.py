@@ -1,5 +1,7 @@
 """Charging: the battery, its charge limit and schedule, and stations nearby."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 

@@ -1,5 +1,7 @@
 """Climate: both seats, fan and air, glass, the cabin's air quality, and a schedule."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Annotated, Any

@@ -1,5 +1,7 @@
 """Home: the map, the drive, and every app at a glance."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.map import lookout
 from automotive_cosim.cockpit.apps.map.scene import ego

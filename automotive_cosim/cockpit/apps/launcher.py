@@ -1,5 +1,7 @@
 """The launcher: every app, to be opened."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.cards import content, rows

@@ -1,5 +1,7 @@
 """The owner's handbook, to search in and to watch."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Annotated, Any
 

@@ -1,5 +1,7 @@
 """Memos: the recorder, and one memo with its removal."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 

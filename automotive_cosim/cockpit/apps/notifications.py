@@ -1,5 +1,7 @@
 """The notifications: what requires attention now, and earlier notices."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.cards import content, note, rows, title

@@ -1,5 +1,7 @@
 """Outside: rain, fog, ice, glare, dust and air as sensed by the car, and remedies for each."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple

@@ -1,5 +1,7 @@
 """Parking: the space, how long, and the tickets."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from datetime import timedelta
 from typing import Annotated, Any

@@ -1,5 +1,7 @@
 """The store: apps that can be installed and removed while parked."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -24,7 +26,7 @@ class Installed(AppData):
 
     apps: tuple[str, ...]
 
-    def with_app(self, name: str, wanted: bool, offered: Iterable[str]) -> "Installed":
+    def with_app(self, name: str, wanted: bool, offered: Iterable[str]) -> Installed:
         """A copy with or without an app, in the order of all that are offered."""
         return Installed(tuple(app for app in offered if (wanted if app == name else app in self.apps)))
 

@@ -1,5 +1,7 @@
 """The timer: its length, the time that is left, and the button that starts and stops it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -30,7 +32,7 @@ class Countdown(AppData):
     begun_s: float | None = None
     """Simulation time at which it began; None while none runs."""
 
-    def longer(self, by_min: int) -> "Countdown":
+    def longer(self, by_min: int) -> Countdown:
         """Longer, or shorter, within the bounds; one that runs ends later, or earlier."""
         return replace(self, minutes=min(MOST_MIN, max(STEP_MIN, self.minutes + by_min)))
 

@@ -1,5 +1,7 @@
 """The trip computer: trip A, and trip B, which keeps counting when A is reset."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal
 

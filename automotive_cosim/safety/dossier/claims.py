@@ -1,5 +1,7 @@
 """A tree of claims, each with what this run says about it, in the terms of ISO 34502 and ISO 21448."""
 
+from __future__ import annotations
+
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.report.stats import rate, rate_upper_bound

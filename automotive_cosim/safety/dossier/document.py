@@ -1,5 +1,7 @@
 """Puts the sections together."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from automotive_cosim.safety.dossier.claims import CLAIMS, claims

@@ -1,5 +1,7 @@
 """What was evaluated, for what, and where in the operational domain."""
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import datetime

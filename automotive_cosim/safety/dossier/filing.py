@@ -1,5 +1,7 @@
 """Writes a safety report: one HTML page, one PDF, and a folder with its data."""
 
+from __future__ import annotations
+
 import json
 from dataclasses import asdict
 from importlib.resources import files

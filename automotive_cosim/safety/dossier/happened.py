@@ -1,5 +1,7 @@
 """What happened: events, failures with their minimal cases, and how critical it was."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Sequence
 from statistics import median

@@ -1,5 +1,7 @@
 """Versions, hashes and limits of a run."""
 
+from __future__ import annotations
+
 import hashlib
 from pathlib import Path
 

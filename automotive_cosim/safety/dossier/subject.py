@@ -1,5 +1,7 @@
 """The trials that a safety report is about, and what its parts share."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -42,7 +44,7 @@ class Claim:
     evidence: str
     section: str = ""
     """The section with the evidence."""
-    parts: tuple["Claim", ...] = ()
+    parts: tuple[Claim, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,7 @@
 """Bounds on what was not seen, and the four areas of ISO 21448."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from math import log, sqrt

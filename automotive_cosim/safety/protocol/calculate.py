@@ -4,6 +4,8 @@ Runs under the Python that the calculator is installed for, as a program of its 
 package: values come as JSON on standard input, points go out so.
 """
 
+from __future__ import annotations
+
 import hashlib
 import json
 import subprocess

@@ -1,5 +1,7 @@
 """The protocol's own calculator, run in the environment that it is installed in; nothing of it is imported here."""
 
+from __future__ import annotations
+
 import json
 import shutil
 import subprocess

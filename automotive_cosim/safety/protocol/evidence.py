@@ -1,5 +1,7 @@
 """Which of an agent's trials speak for which row of a protocol."""
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -97,7 +99,7 @@ class Evidence:
         return sum(each.ok for each in self.trials)
 
     @property
-    def by_country(self) -> Mapping[str, "Evidence"]:
+    def by_country(self) -> Mapping[str, Evidence]:
         """The same, country by country; an unknown country is the empty one."""
         found = defaultdict(list)
         for each in self.trials:

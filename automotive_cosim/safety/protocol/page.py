@@ -1,5 +1,7 @@
 """The page: what the cases show for each row, what they do not, and the points that the calculator gives."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path

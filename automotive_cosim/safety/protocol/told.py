@@ -1,5 +1,7 @@
 """What limits an agent told, as a speed limit information function: which, when, and how far off."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

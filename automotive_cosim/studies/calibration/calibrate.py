@@ -1,5 +1,7 @@
 """Calibrates a scenario: counts in, a scenario out whose simulation carries them."""
 
+from __future__ import annotations
+
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence

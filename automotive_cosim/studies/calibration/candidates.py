@@ -1,5 +1,7 @@
 """The routes among which a fit chooses, and how much of the traffic each has before any count is known."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -54,7 +56,7 @@ class Candidates:
     _known: set[tuple[str, ...]] = field(default_factory=set)
 
     @classmethod
-    def of(cls, trips: Iterable[DrivenTrip]) -> "Candidates":
+    def of(cls, trips: Iterable[DrivenTrip]) -> Candidates:
         """The candidates of a demand that was driven."""
         counts: Counter[tuple[str, ...]] = Counter()
         types: dict[tuple[str, ...], list[str]] = {}
@@ -116,7 +118,7 @@ class _Places:
     """(routes,), edges of each route."""
 
     @classmethod
-    def of(cls, routes: Sequence[Candidate]) -> "_Places":
+    def of(cls, routes: Sequence[Candidate]) -> _Places:
         index: dict[str, int] = {}
         edges = np.array([index.setdefault(edge, len(index)) for route in routes for edge in route.edges])
         lengths = np.array([len(route.edges) for route in routes])

@@ -4,6 +4,8 @@ A fit that meets all counts on paper may send more vehicles to a signal than its
 blocks everyone else. The bounds are those of a lane's saturation flow and, at fixed signals, of its green share.
 """
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -15,6 +15,8 @@ be gzipped. The tables:
   tolerates them.
 """
 
+from __future__ import annotations
+
 import math
 import re
 from collections import defaultdict

@@ -1,5 +1,7 @@
 """Drives a demand in SUMO and measures what passes where, and when."""
 
+from __future__ import annotations
+
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
 from contextlib import closing

@@ -1,5 +1,7 @@
 """The figures of a calibration; ``calibration.json`` in the scenario's folder."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -66,7 +68,7 @@ class Met:
     """Sum of the flows as a share of that of the counts."""
 
     @classmethod
-    def of(cls, flows: Sequence[tuple[float, float]]) -> "Met":
+    def of(cls, flows: Sequence[tuple[float, float]]) -> Met:
         """Computes it from pairs of a flow and its count."""
         distances = [geh(flow, count) for flow, count in flows]
         counted = sum(count for _, count in flows)

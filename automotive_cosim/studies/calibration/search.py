@@ -1,5 +1,7 @@
 """Fits a demand to counts, drives it, and goes on until the simulation carries the counts."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace

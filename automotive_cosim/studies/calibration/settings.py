@@ -1,5 +1,7 @@
 """What can be set about a calibration. Each field is an option of its command."""
 
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass
 from pathlib import Path

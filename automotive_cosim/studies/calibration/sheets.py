@@ -6,6 +6,8 @@ a merged range has the range's value. Text may be separated by commas, semicolon
 commas. Lines above the names of the columns are skipped.
 """
 
+from __future__ import annotations
+
 import codecs
 import csv
 import io

@@ -1,5 +1,7 @@
 """Finds the edge that each counted site stands on, and lists what is doubtful about the counts."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

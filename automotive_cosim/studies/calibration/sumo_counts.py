@@ -12,6 +12,8 @@ Formats: https://sumo.dlr.de/docs/Simulation/Output/Lane-_or_Edge-based_Traffic_
 https://sumo.dlr.de/docs/Simulation/Output/Induction_Loops_Detectors_%28E1%29.html, https://sumo.dlr.de/docs/dfrouter.html
 """
 
+from __future__ import annotations
+
 import math
 import xml.etree.ElementTree as ET
 from collections import defaultdict

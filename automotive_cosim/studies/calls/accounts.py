@@ -1,5 +1,7 @@
 """What studies read from a simulation: the state of the traffic, the ego's consumption, how a future ended."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 
 HALTED_MPS = 0.1

@@ -4,6 +4,8 @@
 futures and others do not; where they do not, every other car aims at a slightly different speed instead.
 """
 
+from __future__ import annotations
+
 from contextlib import closing
 from enum import StrEnum
 from weakref import WeakKeyDictionary
@@ -32,7 +34,7 @@ class Fresh(StrEnum):
     """Every other car's speed factor was changed by ``JITTER`` times a normal variate."""
 
     @classmethod
-    def proven(cls, first: SeedTrace, again: SeedTrace, other: SeedTrace) -> "Fresh":
+    def proven(cls, first: SeedTrace, again: SeedTrace, other: SeedTrace) -> Fresh:
         """What three copies prove, of which the first two had the same seed."""
         are_all_new = all(one != two for one, two in zip(first[0], other[0], strict=True))
         if first != again or not are_all_new:

@@ -1,5 +1,7 @@
 """Sends other cars the ego's other way, so that a study sees what it costs when many follow the same advice."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np

@@ -3,6 +3,8 @@
 Both begin at the instant of the copy, so two copies of one instant differ by the measure alone.
 """
 
+from __future__ import annotations
+
 from collections import Counter
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal

@@ -4,6 +4,8 @@ A study compares futures of one instant. It has to know which vehicles were on t
 each of them arrived, what the ego consumed on the way, and whether the traffic as a whole was still flowing.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Sequence
 
 from automotive_cosim.formats.incidents import AnyIncident

@@ -1,5 +1,7 @@
 """What every car comes to that sets out from now on, and which of them get a cockpit."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial

@@ -1,5 +1,7 @@
 """``automotive-cosim study compare``: two runs of one study."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Annotated
 

@@ -3,6 +3,8 @@
 All copies start from the same instant with the same random numbers, so they differ by the measure alone.
 """
 
+from __future__ import annotations
+
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing

@@ -1,5 +1,7 @@
 """Reads SUMO's output of the flow on every edge, and sums it and the queues by class of road."""
 
+from __future__ import annotations
+
 import xml.etree.ElementTree as ET
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence

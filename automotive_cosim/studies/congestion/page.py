@@ -1,5 +1,7 @@
 """``report.html`` of a congestion study, with its tables, plots and data as files."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 
 from automotive_cosim.contracts.plain import counted

@@ -1,5 +1,7 @@
 """What a congestion study runs: the traffic of every seed, without a measure and with each."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 from automotive_cosim.errors import UserError
@@ -90,7 +92,7 @@ class CongestionPlan(CongestionSettings):
         """The trip along which the time-space diagrams go."""
         return self.opened.ego.trips[0]
 
-    def jobs(self) -> tuple["CongestionJob", ...]:
+    def jobs(self) -> tuple[CongestionJob, ...]:
         """One for every seed, with all measures; a city runs slower than real time."""
         limit_s = 3_600.0 + 10 * self.duration_s * (1 + len(self.measures))
         return tuple(SeedJob(self, seed, CongestionRow, limit_s) for seed in self.seeds)

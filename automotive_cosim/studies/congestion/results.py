@@ -11,6 +11,8 @@ TTI, PTI and buffer index are FHWA's (Travel Time Reliability: Making It There O
 seeds for days; five minutes count by the distance driven in them, as free-flow time.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,5 +1,7 @@
 """The rows of a congestion study: one per seed, with the traffic without a measure and with each."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -24,7 +26,7 @@ class FlowSums:
         """What the same distances take without congestion and signals."""
         return max(0.0, self.time_s - self.lost_s)
 
-    def __add__(self, other: "FlowSums") -> "FlowSums":
+    def __add__(self, other: FlowSums) -> FlowSums:
         return FlowSums(
             time_s=self.time_s + other.time_s,
             lost_s=self.lost_s + other.lost_s,

@@ -1,5 +1,7 @@
 """The tables of a congestion study."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from datetime import timedelta
 from statistics import fmean

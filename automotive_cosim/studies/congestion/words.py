@@ -1,5 +1,7 @@
 """Measures and incidents in words, for tables, legends and answers: ``c2c3 closed`` for ``closure edge=c2c3``."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from string import Formatter
 

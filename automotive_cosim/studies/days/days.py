@@ -8,6 +8,8 @@ of the same trips (``equilibrium.equilibrium``): everybody looks for the quickes
 fewer each day.
 """
 
+from __future__ import annotations
+
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -175,7 +177,7 @@ class DaysPlan(DaysSettings):
             incidents=(),
         )
 
-    def jobs(self) -> tuple["DaysJob", ...]:
+    def jobs(self) -> tuple[DaysJob, ...]:
         """For every seed, all shares, the user equilibrium and the system optimum."""
         return tuple(
             job
@@ -214,7 +216,7 @@ class DaysJob(Job):
         """Limit of its wall time."""
         return 3_600.0 + self.plan.days * 30 * self.plan.minutes
 
-    def planned(self) -> "DaysRow":
+    def planned(self) -> DaysRow:
         """Its row before it runs."""
         return DaysRow(
             id=self.id, scenario=self.plan.scenario, share=self.share, seed=self.seed, optimum=self.optimum

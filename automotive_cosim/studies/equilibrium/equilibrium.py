@@ -6,6 +6,8 @@ averages). The step with the smallest gap is kept. The gap of a micro simulation
 zero. Every trip departs when it entered the network in the first step.
 """
 
+from __future__ import annotations
+
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace

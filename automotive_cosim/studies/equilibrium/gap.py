@@ -6,6 +6,8 @@ over the vehicles that left them, per five minutes, junctions included; edges th
 time. The first edge of a trip is the same on every route and is left out.
 """
 
+from __future__ import annotations
+
 import tempfile
 import xml.etree.ElementTree as ET
 from codecs import getwriter
@@ -145,7 +147,7 @@ class EdgeTimes:
             found[edge] = min(mean_s, found.get(edge, mean_s))
         return found
 
-    def raised(self, calm_s: Mapping[str, float], factor: float) -> "EdgeTimes":
+    def raised(self, calm_s: Mapping[str, float], factor: float) -> EdgeTimes:
         """Times that count what exceeds that of a calm road again, times a factor."""
         raised = EdgeTimes(self._free_s, ())
         raised._means_s = {
@@ -154,7 +156,7 @@ class EdgeTimes:
         }
         return raised
 
-    def blended(self, newer: "EdgeTimes", weight: float) -> "EdgeTimes":
+    def blended(self, newer: EdgeTimes, weight: float) -> EdgeTimes:
         """What is remembered of these times after newer ones: ``weight`` of these, the rest of the newer."""
         made = EdgeTimes(self._free_s, ())
         made._means_s = dict(self._means_s)
@@ -250,7 +252,7 @@ def drive(
 
 
 def against_best(
-    trips: Sequence[DrivenTrip], times: EdgeTimes, ran: "Ran", scratch: Path
+    trips: Sequence[DrivenTrip], times: EdgeTimes, ran: Ran, scratch: Path
 ) -> tuple[dict[str, float], dict[str, float], dict[str, tuple[str, ...]]]:
     """By trip, the time of its route and of the best one, in seconds, and the quickest route."""
     found = quickest(trips, times, ran.net, ran.types, scratch)

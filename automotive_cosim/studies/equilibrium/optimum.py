@@ -11,6 +11,8 @@ from the planned departures to the arrivals of all trips that count, in simulati
 ratio, the price of anarchy, is at least the one printed.
 """
 
+from __future__ import annotations
+
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass

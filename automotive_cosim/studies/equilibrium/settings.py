@@ -1,5 +1,7 @@
 """What can be set about the search for an equilibrium and an optimum. Each field is an option of its command."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

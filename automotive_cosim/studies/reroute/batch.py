@@ -1,5 +1,7 @@
 """Runs the drives of a study, in parallel and resumable, until all are done or the interval is narrow enough."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path

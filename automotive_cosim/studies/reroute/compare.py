@@ -1,5 +1,7 @@
 """Compares two futures of one instant. A gain is what the second one saves; positive is better."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

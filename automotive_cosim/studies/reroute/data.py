@@ -4,6 +4,8 @@
 and every column with its type, and holds what a new run needs: plan, versions and hashes of the scenario's files.
 """
 
+from __future__ import annotations
+
 import hashlib
 import json
 from collections.abc import Iterator, Sequence

@@ -1,5 +1,7 @@
 """``decisions.html``: every decision of a study, with the traffic news, the policies' choices and the results."""
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

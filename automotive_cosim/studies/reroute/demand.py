@@ -1,5 +1,7 @@
 """How far the demand of a study is from an equilibrium: measured once and kept in ``demand.json``."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass

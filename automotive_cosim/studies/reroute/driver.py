@@ -1,5 +1,7 @@
 """Drives to the next decision, and lets an agent decide, who gets the cockpit of the car in a branch."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from datetime import timedelta
 

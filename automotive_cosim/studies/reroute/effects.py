@@ -1,5 +1,7 @@
 """Tables of wider effects: of following a policy, of many cars at once, and on everyone else."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise, product
 from statistics import fmean

@@ -1,5 +1,7 @@
 """How the effect of a choice is distributed over everyone present at the fork, including the ego."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import pairwise
 

@@ -1,5 +1,7 @@
 """Drives the futures of a drive's decisions to their ends, those of one draw at the same time."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack, closing
 

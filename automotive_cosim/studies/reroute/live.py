@@ -5,6 +5,8 @@ are written only while somebody watches: the watcher locks the file ``live/watch
 lock however the watcher ends. The simulation does not change.
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress

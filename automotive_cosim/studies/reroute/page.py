@@ -1,5 +1,7 @@
 """``report.html``: a study on one self-contained page, and its decisions, tables, plots and data as files."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 from statistics import fmean

@@ -1,5 +1,7 @@
 """What a rerouting study runs: every departure of every trip, in the traffic of every seed and rerouting share."""
 
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass
 from itertools import product
@@ -95,7 +97,7 @@ class StudyPlan(RerouteSettings):
         Raises ScenarioError: it cannot be read, or has no such route."""
         return opened(self.scenario, self.from_place, self.to_place)
 
-    def jobs(self) -> tuple["StudyJob", ...]:
+    def jobs(self) -> tuple[StudyJob, ...]:
         """Every drive, grouped by simulation and ordered by departure."""
         scenario = self.opened
         shares = self.shares or (scenario.sumo.background_rerouting,)

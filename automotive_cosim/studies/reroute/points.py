@@ -1,5 +1,7 @@
 """The futures of one decision: the conditions under which they count, and their results."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean, stdev
@@ -69,9 +71,9 @@ class Point:
     branches: list[Future | None] = field(default_factory=list)
     """The future of each branch; None if nothing in it differs from the drive itself."""
     placebo: Future | None = None
-    replicates: list["Drawn"] = field(default_factory=list)
-    together: list["Diverted"] = field(default_factory=list)
-    shut: list["Shut"] = field(default_factory=list)
+    replicates: list[Drawn] = field(default_factory=list)
+    together: list[Diverted] = field(default_factory=list)
+    shut: list[Shut] = field(default_factory=list)
 
 
 @dataclass(slots=True)

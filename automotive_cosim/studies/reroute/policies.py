@@ -1,5 +1,7 @@
 """The policies that decide whether to reroute, and their results, judged on futures that have all been driven."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from enum import StrEnum

@@ -1,5 +1,7 @@
 """Reads the results of a study: its drives, its decisions, and the policies' choices."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -75,7 +77,7 @@ class Study(StudyContent[StudyPlan, TripRow]):
         """The same if the driver follows the advice with that probability."""
         return tuple(choices(self.rows, self.plan.policies, compliance))
 
-    def noise(self) -> "Noise":
+    def noise(self) -> Noise:
         """The effect of chance."""
         return noise(point.decision for point in self.decisions)
 

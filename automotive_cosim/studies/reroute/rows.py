@@ -1,5 +1,7 @@
 """The rows of a study: one per drive with its decisions, and one per policy's choice at a decision."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from statistics import fmean
@@ -37,18 +39,18 @@ class Totals:
         return None if self.lost_s is None else round(self.time_s - self.lost_s, 3)
 
     @classmethod
-    def mean(cls, drives: Sequence["Totals"]) -> "Totals":
+    def mean(cls, drives: Sequence[Totals]) -> Totals:
         """The mean over the drives; that of a single one is itself."""
         if len(drives) == 1:
             return drives[0]
         return cls._made(fmean, drives)
 
-    def saved(self, other: "Totals") -> "Totals":
+    def saved(self, other: Totals) -> Totals:
         """What another drive saves over this one."""
         return Totals._made(lambda values: values[0] - values[1], (self, other))
 
     @classmethod
-    def _made(cls, of: Callable[[Sequence[float]], float], drives: Sequence["Totals"]) -> "Totals":
+    def _made(cls, of: Callable[[Sequence[float]], float], drives: Sequence[Totals]) -> Totals:
         """Every figure of the drives in one; None where one lacks it."""
         made: dict[str, Any] = {}
         for each in fields(cls):

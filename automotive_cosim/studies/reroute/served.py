@@ -1,5 +1,7 @@
 """What the pages show of a study of rerouting: each decision, and its futures on one road."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 from pathlib import Path
 

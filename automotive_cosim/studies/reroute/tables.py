@@ -1,5 +1,7 @@
 """The tables of a study."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Sequence
 
 from automotive_cosim.report.tables import Table, TableRow

@@ -1,5 +1,7 @@
 """Where the ego was in every future of a drive: one file per drive, one row per step of a future."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """What to read before using a study's figures: each kind of warning finds its case in the results."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from statistics import fmean
 

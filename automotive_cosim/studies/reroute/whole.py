@@ -5,6 +5,8 @@ is compared with the copy that keeps its route. With replicates, all of them are
 random numbers from the departure on.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from contextlib import closing
 from itertools import product

@@ -1,5 +1,7 @@
 """What roads and signals carry, by hand."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,7 @@
 """Map: the road around the car, the route ahead, and destinations."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 
 import numpy as np

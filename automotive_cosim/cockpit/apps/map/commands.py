@@ -1,5 +1,7 @@
 """Commands and messages of the map: where to, by which way, and how it is looked at."""
 
+from __future__ import annotations
+
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 

@@ -1,5 +1,7 @@
 """Functions of the map: where to, by which way, and what is there."""
 
+from __future__ import annotations
+
 from typing import Annotated
 
 from annotated_types import Ge, Le

@@ -3,6 +3,8 @@
 It states measurements and messages, whether or not anything follows from them.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping
 
 from automotive_cosim.cockpit.apps.cabin import KINDS, SEATS

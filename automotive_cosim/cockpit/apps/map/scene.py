@@ -1,5 +1,7 @@
 """The present content of the moving map: camera, routes, and marks of what is ahead."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

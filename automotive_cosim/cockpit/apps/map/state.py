@@ -1,5 +1,7 @@
 """What the driver chose on the map, and the turns of the route."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -53,19 +55,19 @@ class Navigation(AppData):
     recents: tuple[str, ...] = ()
     avoid: tuple[str, ...] = ()
 
-    def to(self, name: str) -> "Navigation":
+    def to(self, name: str) -> Navigation:
         """With a new destination; the last ones are remembered, newest first."""
         recents = (name, *(known for known in self.recents if known != name))
         return replace(
             self, destination=name, onward="" if self.onward == name else self.onward, recents=recents[:RECENTS]
         )
 
-    def with_favourite(self, name: str, wanted: bool) -> "Navigation":
+    def with_favourite(self, name: str, wanted: bool) -> Navigation:
         """With or without that favourite, at the end of the list."""
         rest = tuple(known for known in self.favourites if known != name)
         return replace(self, favourites=(*rest, name) if wanted else rest)
 
-    def with_avoided(self, name: str, wanted: bool) -> "Navigation":
+    def with_avoided(self, name: str, wanted: bool) -> Navigation:
         """A copy that avoids something, or no longer does."""
         return replace(self, avoid=tuple(k for k in AVOIDABLE if (wanted if k == name else k in self.avoid)))
 

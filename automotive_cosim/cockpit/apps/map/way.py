@@ -1,5 +1,7 @@
 """Sub-screens of Map: places by kind, one place before departure, and the route with its turns and options."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 

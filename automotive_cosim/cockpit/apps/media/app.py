@@ -1,5 +1,7 @@
 """Media: what plays, the controls, and tracks, playlists, stations, podcasts."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from typing import Annotated
 

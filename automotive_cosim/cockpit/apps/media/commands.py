@@ -1,5 +1,7 @@
 """Commands of media: what plays."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from automotive_cosim.cockpit.apps.media.state import Library, Listening, skipped, source_of, start

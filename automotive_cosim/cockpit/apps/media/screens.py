@@ -1,5 +1,7 @@
 """Media: the present entry, the controls, and tracks, playlists, stations, podcasts."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.media.commands import Play, Skip

@@ -1,5 +1,7 @@
 """Media content, generated from a seed, what the driver chose of it, and what plays."""
 
+from __future__ import annotations
+
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -106,12 +108,12 @@ class Listening(AppData):
     played_s: float = 0.0
     """Playing time of the entry."""
 
-    def with_favourite(self, uri: str, wanted: bool) -> "Listening":
+    def with_favourite(self, uri: str, wanted: bool) -> Listening:
         """With or without that favourite, at the end of the list."""
         rest = tuple(known for known in self.favourites if known != uri)
         return replace(self, favourites=(*rest, uri) if wanted else rest)
 
-    def with_track(self, playlist: str, uri: str, wanted: bool) -> "Listening":
+    def with_track(self, playlist: str, uri: str, wanted: bool) -> Listening:
         """With or without a track in a playlist, at its end."""
         changed = []
         for known in self.playlists:

@@ -1,5 +1,7 @@
 """Phone: calls, contacts and messages."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 
 import numpy as np

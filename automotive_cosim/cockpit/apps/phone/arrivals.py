@@ -1,5 +1,7 @@
 """Incoming calls and messages while the car drives, at times set before departure."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import Literal

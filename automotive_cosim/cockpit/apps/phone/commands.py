@@ -1,5 +1,7 @@
 """Commands of the phone: outgoing and incoming calls, and messages."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 from automotive_cosim.cockpit.apps.phone.state import Directory, OnCall, PastCall, Phone, tell

@@ -1,5 +1,7 @@
 """A message with a figure, put together by taps: a sentence, a number, send. The draft stays until it is sent."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

@@ -1,5 +1,7 @@
 """Functions of the phone: calls, messages, favourites."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from typing import Annotated
 

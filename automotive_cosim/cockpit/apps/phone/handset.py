@@ -1,5 +1,7 @@
 """The card at the side of the phone's screens: the present call, or the phone that is linked."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.phone.commands import DECLINE_CALL, HANG_UP, TAKE_CALL

@@ -1,5 +1,7 @@
 """One person on the phone: how to reach them, and the messages to and fro."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.apps.phone.commands import Dial, Read, SendReply
 from automotive_cosim.cockpit.apps.phone.handset import beside_handset
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phone

@@ -1,5 +1,7 @@
 """Phone: favourites, recent calls, contacts, messages and the keypad."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.apps.phone.commands import Dial
 from automotive_cosim.cockpit.apps.phone.handset import beside_handset
 from automotive_cosim.cockpit.apps.phone.state import Contact, Directory, PastCall, Phone, Thread

@@ -1,5 +1,7 @@
 """Contacts, calls and messages, generated from a seed, the driver's use of them, and what arrives."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -145,7 +147,7 @@ class Directory(AppData):
         """Number of a contact; anything else is a number itself."""
         return next((contact.number for contact in self.contacts if contact.name == who), who)
 
-    def written(self, phone: "Phone") -> tuple[Thread, ...]:
+    def written(self, phone: Phone) -> tuple[Thread, ...]:
         """All messages, including those of this drive, the newest first."""
         before = {thread.who: thread for thread in self.threads}
         new: dict[str, Thread] = {}
@@ -158,7 +160,7 @@ class Directory(AppData):
             )
         return (*reversed(new.values()), *(thread for thread in self.threads if thread.who not in new))
 
-    def thread(self, who: str, phone: "Phone") -> Thread | None:
+    def thread(self, who: str, phone: Phone) -> Thread | None:
         """The messages of a contact."""
         return next((thread for thread in self.written(phone) if thread.who == who), None)
 
@@ -167,12 +169,12 @@ class Directory(AppData):
         """Whether messages that came a little before departure have no time yet."""
         return any(thread.when == EARLIER for thread in self.threads)
 
-    def dated(self, clock: str) -> "Directory":
+    def dated(self, clock: str) -> Directory:
         """With that time for these messages."""
         dated = (replace(thread, when=clock) if thread.when == EARLIER else thread for thread in self.threads)
         return replace(self, threads=tuple(dated))
 
-    def unread(self, phone: "Phone") -> tuple[str, ...]:
+    def unread(self, phone: Phone) -> tuple[str, ...]:
         """Senders of unread messages."""
         return tuple(thread.who for thread in self.written(phone) if thread.unread and thread.who not in phone.read)
 
@@ -248,29 +250,29 @@ class Phone(AppData):
     expected: tuple[Arrival, ...] = ()
     """Calls and messages still to come."""
 
-    def dialled(self, who: str, when: str, time_s: float) -> "Phone":
+    def dialled(self, who: str, when: str, time_s: float) -> Phone:
         """A copy with an outgoing call."""
         logged = self.logged(PastCall(who, when, "out"))
         return replace(logged, on_call=OnCall(who, time_s), called=(*self.called, who))
 
-    def logged(self, call: PastCall) -> "Phone":
+    def logged(self, call: PastCall) -> Phone:
         """A copy with one more line in the call list."""
         return replace(self, made=(call, *self.made))
 
-    def received_from(self, message: Received) -> "Phone":
+    def received_from(self, message: Received) -> Phone:
         """A copy with another message, which makes its sender's thread unread."""
         read = tuple(who for who in self.read if who != message.who)
         return replace(self, inbox=(*self.inbox, message), read=read)
 
-    def replied(self, who: str, text: str, time_s: float) -> "Phone":
+    def replied(self, who: str, text: str, time_s: float) -> Phone:
         """With a sent message; what they wrote stays unread until it is opened."""
         return replace(self, sent=(*self.sent, Sent(who, text, time_s)))
 
-    def opened(self, who: str) -> "Phone":
+    def opened(self, who: str) -> Phone:
         """A copy with a contact's messages read."""
         return self if who in self.read else replace(self, read=(*self.read, who))
 
-    def with_favourite(self, who: str, wanted: bool) -> "Phone":
+    def with_favourite(self, who: str, wanted: bool) -> Phone:
         """With or without that favourite, at the end of the list."""
         rest = tuple(known for known in self.favourites if known != who)
         return replace(self, favourites=(*rest, who) if wanted else rest)

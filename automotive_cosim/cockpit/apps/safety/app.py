@@ -1,5 +1,7 @@
 """Safety centre: warn the driver, ask to slow down or stop, call for help."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.safety.screens import emergency, safety
 from automotive_cosim.cockpit.apps.safety.state import AlertDraft, Alerts

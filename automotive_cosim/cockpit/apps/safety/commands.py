@@ -1,5 +1,7 @@
 """Commands of the safety centre: to warn the driver, to ask for a lower speed or a stop."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from automotive_cosim.cockpit.apps.safety.state import ADVICE, KINDS, AlertDraft, AlertRecord, Alerts

@@ -1,5 +1,7 @@
 """Safety centre: warn the driver, ask to slow down or stop, call for help; and earlier alerts."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.phone.commands import CALL_EMERGENCY

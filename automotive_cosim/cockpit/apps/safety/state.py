@@ -1,5 +1,7 @@
 """Alerts: those given, and the one that is being prepared."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 

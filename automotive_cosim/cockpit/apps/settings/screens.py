@@ -1,5 +1,7 @@
 """Settings: display and units, sound, connections, language and time, privacy, profiles."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import replace
 

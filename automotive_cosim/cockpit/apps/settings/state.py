@@ -1,5 +1,7 @@
 """Networks and devices that the car is linked to, and the drivers' profiles, one of which is chosen."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Vehicle: lamps and wipers, assistance, doors, seats, mirrors, and the lights inside."""
 
+from __future__ import annotations
+
 from typing import Annotated
 
 from annotated_types import Ge, Le

@@ -1,5 +1,7 @@
 """Sub-screens of Vehicle: driving, doors and windows, seats, mirrors, interior lights."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.apps.vehicle.screens import page
 from automotive_cosim.cockpit.apps.vehicle.state import HONK, REMEMBERED, CarMemory
 from automotive_cosim.cockpit.camera import scene

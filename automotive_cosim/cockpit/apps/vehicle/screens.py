@@ -1,5 +1,7 @@
 """Vehicle: lamps and wipers with a view of the car, and driver assistance."""
 
+from __future__ import annotations
+
 from automotive_cosim.cockpit.apps.vehicle.state import WASH
 from automotive_cosim.cockpit.cards import SMALL, choice, choices, content, heading, levels, stepper, switch
 from automotive_cosim.cockpit.flow import Block, BlockItem, at, card, fill, framed, grid, line, panels, stack

@@ -1,5 +1,7 @@
 """What the driver did at the car, by horn and washer, and the seat positions that it remembers."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -37,7 +39,7 @@ class CarMemory(AppData):
     horns: int = 0
     washes: int = 0
 
-    def with_memory(self, slot: int, signals: Signals) -> "CarMemory":
+    def with_memory(self, slot: int, signals: Signals) -> CarMemory:
         """With the present seat position stored in a memory slot."""
         values = tuple(signals[signal] for signal in REMEMBERED)
         return replace(self, memory=(*self.memory[:slot], values, *self.memory[slot + 1 :]))
