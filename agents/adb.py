@@ -68,11 +68,7 @@ class Controller:
         self._clear = False
 
     def execute_adb_call(self, request: Any) -> Response:
-        """Performs one request.
-
-        Raises:
-            ActionError: the car has nothing like it.
-        """
+        """Performs one request. Raises ActionError: the car has nothing like it."""
         command = request.WhichOneof("command")
         if command == "tap":
             return self._tapped((request.tap.x, request.tap.y), will_repeat=request.timeout_sec == 0)

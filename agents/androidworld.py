@@ -167,7 +167,6 @@ class _Environment:
         return AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
 
     def reset(self, go_home: bool = False) -> AndroidWorldState:
-        """The current screen; nothing is reset."""
         return self.get_state()
 
     def execute_action(self, action: Any) -> None:
@@ -192,7 +191,6 @@ class _Environment:
         self.wait()
 
     def elements(self) -> Sequence[Element]:
-        """The elements on the screen now."""
         return self.now().elements or ()
 
     def hide_automation_ui(self) -> None:
@@ -240,9 +238,7 @@ class AndroidWorldAgent:
     def act(self, observation: Observation) -> Action:
         """Resumes the agent until its next action, or the end of a ``step`` without one.
 
-        Raises:
-            ActionError: it raised, took no action in a step, or took one that does not exist here.
-        """
+        Raises ActionError: it raised, took no action in a step, or took one that does not exist here."""
         if self._env is None:
             self._env = _Environment(_screen_px(observation))
             threading.Thread(target=self._live, args=(self._env,), daemon=True).start()

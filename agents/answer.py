@@ -65,9 +65,7 @@ def read(text: str, *, is_cut: bool = False) -> ParsedAnswer:
         is_cut: whether it was cut off at its longest. Then only a whole action after its label counts: any other
             may be a thought or half of one.
 
-    Raises:
-        ActionError: it has no action, or a malformed one; the message says which.
-    """
+    Raises ActionError: it has no action, or a malformed one; the message says which."""
     text = ended(text)
     if (told := _object(text)) is not None:
         return ParsedAnswer(str(told["situation"]), str(told["plan"]), parse(told["action"]), strict=True)
@@ -123,9 +121,7 @@ def _object(text: str) -> Json | None:
 def ended(text: str) -> str:
     """The end of the answer, without thoughts, up to the token that ends it, which some servers leave in it.
 
-    Raises:
-        ActionError: it ended within its thoughts.
-    """
+    Raises ActionError: it ended within its thoughts."""
     text = spoken(text)[-LONGEST:].rpartition(FINAL)[2]
     marks = list(END_TOKEN.finditer(text))
     first = next((mark.start() for mark in marks if text[: mark.start()].strip()), None)

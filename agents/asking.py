@@ -15,7 +15,6 @@ class Asking:
     """Asks a model and notes what came of it, for one episode at a time."""
 
     def __init__(self, chat_model: ChatModel, settings: AgentSettings) -> None:
-        """Begins with the whole budget."""
         self.chat_model = chat_model
         self._settings = settings
         self.stages: list[Stage] = []
@@ -23,7 +22,6 @@ class Asking:
         self.reset()
 
     def reset(self) -> None:
-        """Begins another episode."""
         self.stages.clear()
         self._tokens = 0
         self._seconds = 0.0

@@ -18,9 +18,7 @@ class Agent(Protocol):
     """Acts on observations for one episode at a time."""
 
     @property
-    def name(self) -> str:
-        """The name written into results."""
-        ...
+    def name(self) -> str: ...
 
     @property
     def model(self) -> str:
@@ -80,7 +78,6 @@ class Stage:
     """Number of pictures sent with the question."""
 
     def as_json(self) -> Json:
-        """The stage as a JSON object."""
         return {
             "stage": self.name,
             "text": self.text,

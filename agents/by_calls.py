@@ -65,9 +65,7 @@ def translated(walk: Episode) -> tuple[TimedCall, ...]:
     Args:
         walk: an episode at its hand-over, which is played by touch and closed.
 
-    Raises:
-        UntranslatableError: no function gives one of its commands.
-    """
+    Raises UntranslatableError: no function gives one of its commands."""
     conditions = replace(walk.setup.conditions, interface=Interface.TOUCH, see=See.BOTH)
     walk.setup = replace(walk.setup, channels=ALL - {Channel.SCREENSHOT}, conditions=conditions)
     oracle, calls = Oracle(), list[TimedCall]()
@@ -151,7 +149,6 @@ class OracleByCalls:
         self._player: CallPlayer | None = None
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._branch = self._player = None
 
     def brief(

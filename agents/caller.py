@@ -71,7 +71,6 @@ class Caller:
 
     @property
     def model(self) -> str:
-        """The model's name."""
         return self._asking.chat_model.name
 
     @property
@@ -80,7 +79,6 @@ class Caller:
         return self._profile.channels
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._asking.reset()
         self._wish = ChatMessage("user", "")
         self._told: list[tuple[ChatMessage, list[ChatMessage]]] = []
@@ -167,9 +165,7 @@ def heard(reply: ModelReply, schemas: Mapping[str, Json], count: int = 0) -> Cha
     Args:
         schemas: of the parameters, by function.
 
-    Raises:
-        ActionError: it ended within its thoughts.
-    """
+    Raises ActionError: it ended within its thoughts."""
     try:
         told = json.loads(reply.text)
         say, calls = str(told["say"]), [(str(call["name"]), call["arguments"], call) for call in told["calls"]]

@@ -37,11 +37,7 @@ class Guest:
     """A guest agent behind this project's protocol. An error of its own costs it the step and is reported."""
 
     def __init__(self, agent: Any) -> None:
-        """Takes an object that has ``reset`` and ``act``.
-
-        Raises:
-            UserError: its ``channels`` are invalid.
-        """
+        """Takes an object that has ``reset`` and ``act``. Raises UserError: its ``channels`` are invalid."""
         self._agent = agent
         self.name = str(getattr(agent, "name", type(agent).__name__))
         self.model = str(getattr(agent, "model", "none"))
@@ -51,11 +47,7 @@ class Guest:
             raise UserError(f"agent {self.name!r}: {error}; channels are {', '.join(Channel)}") from error
 
     def reset(self, goal: str) -> None:
-        """Passes the goal on.
-
-        Raises:
-            UserError: the agent raised.
-        """
+        """Passes the goal on. Raises UserError: the agent raised."""
         try:
             with aside():
                 self._agent.reset(goal)
@@ -87,9 +79,7 @@ class Guest:
 def load(spec: str) -> Agent:
     """An agent of the class ``package.module:Class``, which may be in the working folder.
 
-    Raises:
-        UserError: the module or class does not exist, cannot be instantiated, or lacks something.
-    """
+    Raises UserError: the module or class does not exist, cannot be instantiated, or lacks something."""
     made = own_class(spec, "agent")
     if callable(getattr(made, "step", None)) and not hasattr(made, "act"):
         return AndroidWorldAgent(made)
@@ -125,9 +115,7 @@ def own_class(spec: str, what: str) -> type:
     Args:
         what: it should be, for errors.
 
-    Raises:
-        UserError: there is no such module or class.
-    """
+    Raises UserError: there is no such module or class."""
     module_name, _, class_name = spec.partition(":")
     if not module_name or not class_name:
         raise UserError(f"{what} {spec!r} does not have the form {FORM}")

@@ -59,9 +59,7 @@ class Human:
     def act(self, observation: Observation) -> Action:
         """The action that the person enters; the end of the input interrupts the run.
 
-        Raises:
-            KeyboardInterrupt: there is no more input.
-        """
+        Raises KeyboardInterrupt: there is no more input."""
         self._show(observation)
         while True:
             self._say("> ", end="")
@@ -88,11 +86,7 @@ class Human:
 
 
 def understood(line: str) -> Action:
-    """The action that a line of input means.
-
-    Raises:
-        ActionError: it is not an action.
-    """
+    """The action that a line of input means. Raises ActionError: it is not an action."""
     line = line.strip()
     if line.startswith("{"):
         return parse(line)

@@ -30,7 +30,6 @@ class LimitTeller:
         self.reset("")
 
     def reset(self, goal: str) -> None:
-        """Has told nothing yet."""
         self._told: float | None = None
 
     def act(self, observation: Observation) -> Action:

@@ -62,7 +62,6 @@ class Strategy:
         )
 
     def as_json(self) -> Json:
-        """The strategy as a JSON object."""
         return asdict(self)
 
 
@@ -70,11 +69,7 @@ class Memory:
     """An SQLite file of strategies; when there are too many, those unused for longest are removed."""
 
     def __init__(self, path: Path, most: int = MOST_STRATEGIES) -> None:
-        """Opens or creates the file.
-
-        Raises:
-            UserError: it cannot be created, or is not a memory.
-        """
+        """Opens or creates the file. Raises UserError: it cannot be created, or is not a memory."""
         self._path = path
         self._most = most
         with self._open() as file:

@@ -57,9 +57,7 @@ class ModelAgent:
         Args:
             settings: what to take away from the profile, the budget, and the memory's file.
 
-        Raises:
-            UserError: the memory's file cannot be used, or the model would see nothing of the screen.
-        """
+        Raises UserError: the memory's file cannot be used, or the model would see nothing of the screen."""
         self._profile = profile.under(settings)
         self._asking = Asking(chat_model, settings)
         is_blind = settings.conditions.see is See.PICTURE and not self._sees
@@ -74,12 +72,10 @@ class ModelAgent:
 
     @property
     def name(self) -> str:
-        """The profile's name."""
         return self._profile.name
 
     @property
     def model(self) -> str:
-        """The model's name."""
         return self._asking.chat_model.name
 
     @property

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.actions import point
 from automotive_cosim.cockpit.app import Where
-from automotive_cosim.cockpit.cockpit import OPPOSITE
 from automotive_cosim.cockpit.registry import apps_in
+from automotive_cosim.cockpit.touchscreen import OPPOSITE
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -69,7 +69,6 @@ class Oracle:
         self._drawn: Callable[[], Sequence[Element]] = tuple[Element, ...]
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._moves.clear()
         self._pressed = 0
         self._lists_seen.clear()

@@ -90,7 +90,6 @@ class _AgentServer:
         self._folder = ""
 
     def run(self) -> None:
-        """Serves until the worker is gone."""
         take_orphans()  # of an agent, which end here
         try:
             while True:

@@ -28,11 +28,7 @@ class AgentPart(StrEnum):
 
 
 def parts(names: Iterable[str]) -> frozenset[AgentPart]:
-    """Parts by name.
-
-    Raises:
-        UnknownNameError: there is no such part.
-    """
+    """Parts by name. Raises UnknownNameError: there is no such part."""
     chosen = list(names)
     for name in chosen:
         if name not in set(AgentPart):

@@ -39,11 +39,7 @@ _CONTROL = re.compile(r"<\|\w+\|>(?:assistant|final)?")
 
 
 def spoken(text: str) -> str:
-    """An answer without its thoughts.
-
-    Raises:
-        ActionError: it ends within them, or says nothing besides.
-    """
+    """An answer without its thoughts. Raises ActionError: it ends within them, or says nothing besides."""
     cut, text = False, _TOKEN.sub("", text)
 
     def channel(found: re.Match[str]) -> str:

@@ -32,7 +32,6 @@ class NoOp:
         """Does nothing."""
 
     def act(self, observation: Observation) -> Action:
-        """Waits a second."""
         return Action(ActionType.WAIT, seconds=1)
 
 
@@ -48,11 +47,9 @@ class AlwaysAlert:
         self._warned = False
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._warned = False
 
     def act(self, observation: Observation) -> Action:
-        """The alert, then ``complete``."""
         if self._warned:
             return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
         self._warned = True
@@ -70,11 +67,9 @@ class AlwaysAsk:
         self._asked = False
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._asked = False
 
     def act(self, observation: Observation) -> Action:
-        """The question, then ``complete``."""
         if self._asked:
             return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
         self._asked = True
@@ -136,11 +131,9 @@ class PressEverything:
         self._pressed: set[str] = set()
 
     def reset(self, goal: str) -> None:
-        """Forgets what it has pressed."""
         self._pressed.clear()
 
     def act(self, observation: Observation) -> Action:
-        """The next control, or the declaration."""
         elements = observation.elements or ()
         for index in _touchable(observation):
             if (key := _key(elements[index])) not in self._pressed:

@@ -38,7 +38,6 @@ class Wire:
     """One end of a connection."""
 
     def __init__(self, connection: socket.socket) -> None:
-        """Takes ownership of the socket."""
         self._socket = connection
 
     def send_object(self, message: object, within_s: float | None = None) -> None:
@@ -66,19 +65,11 @@ class Wire:
             raise GoneError from error
 
     def send_json(self, message: Json) -> None:
-        """Sends a JSON object, to the harness.
-
-        Raises:
-            GoneError: the other side is gone.
-        """
+        """Sends a JSON object, to the harness. Raises GoneError: the other side is gone."""
         self.send(json.dumps(message).encode())
 
     def receive_object(self) -> Any:
-        """Waits for an object of the harness.
-
-        Raises:
-            GoneError: the other side is gone.
-        """
+        """Waits for an object of the harness. Raises GoneError: the other side is gone."""
         return pickle.loads(self._receive(None))
 
     def receive_json(self, within_s: float) -> Json:
@@ -92,22 +83,14 @@ class Wire:
         return _json(bytes(self._receive(time.monotonic() + within_s, LONGEST_BYTES)))
 
     def send_socket(self, connection: socket.socket) -> None:
-        """Sends a socket.
-
-        Raises:
-            GoneError: the other side is gone.
-        """
+        """Sends a socket. Raises GoneError: the other side is gone."""
         try:
             socket.send_fds(self._socket, [b"s"], [connection.fileno()])
         except OSError as error:
             raise GoneError from error
 
     def receive_socket(self) -> socket.socket:
-        """Receives a socket.
-
-        Raises:
-            GoneError: the other side is gone.
-        """
+        """Receives a socket. Raises GoneError: the other side is gone."""
         _, descriptors, _, _ = socket.recv_fds(self._socket, 1, 1)
         if not descriptors:
             raise GoneError
@@ -146,9 +129,7 @@ class Wire:
 
 def _json(data: bytes) -> Json:
     """
-    Raises:
-        ValueError: it is no JSON object that could be stored and read again.
-    """
+    Raises ValueError: it is no JSON object that could be stored and read again."""
     if sum(map(data.count, (b"[", b"{", b","))) > MOST_VALUES:
         raise ValueError(f"it may have over {MOST_VALUES:,} values")
     try:

@@ -31,7 +31,7 @@ from automotive_cosim.envs.vector import ConcurrentVectorEnv
 from automotive_cosim.episode.fleet import Fleet
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.run.measure import pss_mb
+from automotive_cosim.run.bench import pss_mb
 from automotive_cosim.studies.adoption.adoption import AdoptionPlan
 from automotive_cosim.studies.calls.town import NOWHERE, driving
 from automotive_cosim.traffic.base import EgoPlan

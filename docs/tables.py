@@ -26,7 +26,7 @@ from automotive_cosim.exchange.catalogs import CARRIED, DIFFERENT, REFUSED, tabl
 from automotive_cosim.formats.bounds import READERS
 from automotive_cosim.formats.docs import field_docs, member_docs
 from automotive_cosim.interface import spaces
-from automotive_cosim.interface.policy import HOUSE
+from automotive_cosim.interface.house_rules import HOUSE
 from automotive_cosim.models.gguf import KNOWN
 from automotive_cosim.publish.leaderboard import board
 from automotive_cosim.run import difficulty

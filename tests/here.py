@@ -8,9 +8,9 @@ from typing import Any
 
 from automotive_cosim.run.budget import Spent
 from automotive_cosim.run.fork_server import ForkServer
+from automotive_cosim.run.phase import JobPhase
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.settings import Budget, Pictures
-from automotive_cosim.run.stage import JobStage
 from automotive_cosim.run.worker import run_job
 from automotive_cosim.traffic.fork import Simulations
 
@@ -25,7 +25,7 @@ class Here:
     job: Any = None
     count: int = 1
     is_ready: bool = True
-    stage: JobStage = field(default_factory=JobStage)
+    stage: JobPhase = field(default_factory=JobPhase)
 
     @property
     def handles(self) -> list[Any]:

@@ -80,7 +80,6 @@ class A2AAgent:
         return CHANNELS
 
     def reset(self, goal: str) -> None:
-        """Begins another context."""
         self._line.begin()
         self._reader = AnswerReader(self._tools)
         self._is_new, self._heard = True, 0

@@ -84,9 +84,7 @@ class AgentLine:
             parts: strings for text, bytes for a WAV file, all else for data.
             limit_s: wall seconds in which the whole answer has to be there.
 
-        Raises:
-            AgentError: it does not answer, not in time, or something that is no answer.
-        """
+        Raises AgentError: it does not answer, not in time, or something that is no answer."""
         message = new_message(list(map(_made, parts)), self._context, self._task or None, Role.ROLE_USER)
         message.metadata.update({"source": source})
         try:

@@ -76,9 +76,7 @@ class AnswerReader:
     def read(self, parts: Sequence[Any], metadata: Json) -> RemoteAnswer:
         """An answer from its parts: strings are text, all else is data.
 
-        Raises:
-            ValueError: a part is not as the contract has it.
-        """
+        Raises ValueError: a part is not as the contract has it."""
         say: list[str] = []
         reasoning: list[str] = []
         calls: list[ToolCall] = []

@@ -44,9 +44,7 @@ class NativeAgent:
         Args:
             model: the model's whole name, with its format, for results.
 
-        Raises:
-            UserError: the model sees no pictures.
-        """
+        Raises UserError: the model sees no pictures."""
         if not chat_model.sees_pictures:
             raise UserError(
                 f"agent 'native' shows its model nothing but pictures, and {chat_model.name!r} sees none"
@@ -58,7 +56,6 @@ class NativeAgent:
         self.reset("")
 
     def reset(self, goal: str) -> None:
-        """Forgets the previous episode."""
         self._asking.reset()
         self._history: list[str] = []
         self._left: deque[tuple[Action, GuiCall]] = deque()

@@ -103,7 +103,6 @@ class Format:
         return ", ".join(name for name in told if name in (CAR, "status") or self.verbs[name].may_decline)
 
     def as_json(self) -> Json:
-        """What is listed of it."""
         words = [asdict(each) | {"verbs": [*each.verbs]} for each in self.words]
         told = {"models": self.models, "coordinates": self.grid.told, "declines_with": self.declines}
         return told | {"lacks": [*self.lacks], "words": words}
@@ -111,10 +110,8 @@ class Format:
     def acts(self, text: str, hand: Hand) -> list[tuple[Action, GuiCall]]:
         """The actions of an answer, each with the call that asks for it.
 
-        Raises:
-            ActionError: it cannot be read, has a word that the format does not have, or asks for what the car does
-                not have.
-        """
+        Raises ActionError: it cannot be read, has a word that the format does not have, or asks for what the car
+        does not have."""
         found: list[tuple[Action, GuiCall]] = []
         calls = self.syntax.read(text, self.verbs)
         for call in calls:

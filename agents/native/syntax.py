@@ -31,16 +31,10 @@ class Syntax(Protocol):
         ...
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
-        """The calls in an answer, in order.
-
-        Raises:
-            ActionError: it has none.
-        """
+        """The calls in an answer, in order. Raises ActionError: it has none."""
         ...
 
-    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """An answer with these calls."""
-        ...
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str: ...
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
         """The calls that a model may make, for its prompt; the picture has the coordinates 0 to width, height."""

@@ -135,9 +135,8 @@ class Hand:
 def actions(verbs: Mapping[str, Verb], call: GuiCall, hand: Hand) -> list[Action]:
     """The actions that a call asks for, one after the other.
 
-    Raises:
-        ActionError: the format has no such word, an argument is missing or wrong, or the car has nothing like it.
-    """
+    Raises ActionError: the format has no such word, an argument is missing or wrong, or the car has nothing like
+    it."""
     verb = verbs.get(call.name)
     if verb is None:
         raise ActionError(str(UnknownNameError("action in this format", call.name[:40], verbs)))
@@ -377,9 +376,7 @@ def _typed(text: str, verb: Verb, call: GuiCall, hand: Hand) -> Action:
 def typed(text: str, elements: Sequence[Element], last: tuple[int, int] | None, *, clear: bool = False) -> Action:
     """The action that types a text where a device would: into the field with the focus, or else at the last touch.
 
-    Raises:
-        ActionError: there is neither.
-    """
+    Raises ActionError: there is neither."""
     cleared = clear or None
     focused = next((i for i, entry in enumerate(elements) if entry.is_editable and entry.is_focused), None)
     if focused is not None:

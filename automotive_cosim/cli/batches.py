@@ -108,7 +108,6 @@ class ProgressView(Generic[R]):
             self._bar.stop()
 
     def tell(self, progress: Progress[R]) -> None:
-        """Shows the current progress."""
         progress, overdue = self._overdue(progress)
         time_told = time_left(progress) or self._time_so_far(progress)
         told = ", ".join(filter(None, (self._words(progress), time_told, progress.budget)))
@@ -141,11 +140,7 @@ class ProgressView(Generic[R]):
 
 
 def check_prices(models: Iterable[str], budget: Budget) -> None:
-    """Refuses a budget in dollars for models without a price.
-
-    Raises:
-        UserError: a model at an endpoint has none.
-    """
+    """Refuses a budget in dollars for models without a price. Raises UserError: a model at an endpoint has none."""
     if budget.usd is None:
         return
     for name in models:
@@ -179,11 +174,7 @@ def minutes_in_words(seconds: Range) -> str:
 
 
 def tell_stopped(end: Progress[Any]) -> None:
-    """Ends a command whose budget did not last.
-
-    Raises:
-        UserError: something was not run because of the budget.
-    """
+    """Ends a command whose budget did not last. Raises UserError: something was not run because of the budget."""
     if end.stopped:
         left = counted(end.planned - end.done, "run")
         raise UserError(f"{end.stopped}; {left} left: rerun with a larger budget to continue")
@@ -200,11 +191,7 @@ def tell_notes(scenarios: Iterable[Scenario], *, runs: bool = True) -> None:
 
 
 def words(name: str, text: str) -> list[str]:
-    """The words between commas.
-
-    Raises:
-        UserError: there are none.
-    """
+    """The words between commas. Raises UserError: there are none."""
     found = [word.strip() for word in text.split(",") if word.strip()]
     if not found:
         raise UserError(f"--{name} is empty; omit it to use the default")
@@ -214,9 +201,7 @@ def words(name: str, text: str) -> list[str]:
 def whole_numbers_in(name: str, text: str) -> list[int]:
     """Whole numbers and ranges in the option ``--name``, separated by commas.
 
-    Raises:
-        UserError: the text contains anything else.
-    """
+    Raises UserError: the text contains anything else."""
     found: list[int] = []
     for word in words(name, text):
         first, dash, last = word.partition("-")
@@ -227,11 +212,7 @@ def whole_numbers_in(name: str, text: str) -> list[int]:
 
 
 def numbers_in(name: str, text: str) -> list[float]:
-    """The numbers in the option ``--name``, separated by commas.
-
-    Raises:
-        UserError: one of them is none.
-    """
+    """The numbers in the option ``--name``, separated by commas. Raises UserError: one of them is none."""
     found = []
     for word in words(name, text):
         try:

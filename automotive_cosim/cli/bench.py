@@ -27,7 +27,7 @@ def bench(
     as_json: AsJson = False,
 ) -> None:
     """Time a libsumo loop and the environment side by side; also resets and memory."""
-    from automotive_cosim.run.measure import measure
+    from automotive_cosim.run.bench import measure
 
     def say(what: str) -> None:
         if not as_json:

@@ -35,9 +35,7 @@ def takes_conditions(*, lists: bool = False) -> Callable[[F], F]:
 def values_of(settings: Mapping[str, Any]) -> dict[str, list[Any]]:
     """The values between the commas of the options that were given, by the conditions' names.
 
-    Raises:
-        UserError: an option is empty.
-    """
+    Raises UserError: an option is empty."""
     return {each.name: [_value(each, word) for word in words(each.word, text)] for each, text in _told(settings)}
 
 

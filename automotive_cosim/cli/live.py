@@ -55,7 +55,6 @@ class LongWait:
         self._has_come = threading.Event()
 
     def start(self, of: str) -> None:
-        """Waits for something from now on."""
         self.stop()
         self._has_come = threading.Event()
         threading.Thread(target=self._wait, args=(of, self._has_come), daemon=True).start()

@@ -268,9 +268,7 @@ def _told_before(
 def _before(folder: Path, about: Json, points: int) -> tuple[int, float]:
     """The number of points that the sampler was first laid out for, and the seconds that earlier starts took.
 
-    Raises:
-        UserError: the folder's search was started with something else.
-    """
+    Raises UserError: the folder's search was started with something else."""
     from automotive_cosim.formats.files import read_json
 
     path = folder / SETTINGS

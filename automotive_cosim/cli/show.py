@@ -162,7 +162,7 @@ def factors(as_json: AsJson = False) -> None:
 
 def policy(as_json: AsJson = False) -> None:
     """List the house rules, which `--policy house` tells an agent."""
-    from automotive_cosim.interface.policy import HOUSE
+    from automotive_cosim.interface.house_rules import HOUSE
 
     told = [{"id": str(each.id), "about": each.words, "source": each.source} for each in HOUSE]
     _tell("policy", told, as_json=as_json)

@@ -266,9 +266,8 @@ _FENCE = re.compile(r"\A\s*```\w*\s*(.*?)\s*```\s*\Z", re.DOTALL)
 def parse(value: str | Json) -> Action:
     """Reads one action from a JSON object or its text.
 
-    Raises:
-        ActionError: not JSON, not an object, an unknown type or value, or a missing, extra or ill-typed field.
-    """
+    Raises ActionError: not JSON, not an object, an unknown type or value, or a missing, extra or ill-typed
+    field."""
     if isinstance(value, str):
         try:
             value = json.loads(_FENCE.sub(r"\1", value))
@@ -288,9 +287,7 @@ def parse(value: str | Json) -> Action:
 def check(action: Action) -> Action:
     """Returns the action if its fields fit its type.
 
-    Raises:
-        ActionError: a field is missing, extra or out of range; the message names it.
-    """
+    Raises ActionError: a field is missing, extra or out of range; the message names it."""
     takes = FIELDS[action.action_type]
     given = {name for name, value in _each(action) if value is not None} - {"action_type"}
     name = f"action {action.action_type!s}"

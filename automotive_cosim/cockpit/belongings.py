@@ -86,9 +86,7 @@ def bring(state: State, brought: Belongings, rng: np.random.Generator) -> None:
     Args:
         rng: draws what a diary has around what matters.
 
-    Raises:
-        UnknownNameError: there is no place of a name.
-    """
+    Raises UnknownNameError: there is no place of a name."""
     people = _with_people(state.of(Directory), brought)
     memos, trip = state.of(Memos), state.of(TripMeters)
     noted = brought.diary.memos(rng) if brought.diary else ()

@@ -123,9 +123,7 @@ def _readings() -> tuple[CarFunction, ...]:
 def functions() -> Mapping[str, CarFunction]:
     """Every command and reading as a function, by its name: readings, then those of the actuators and of the apps.
 
-    Raises:
-        ValueError: two functions have the same name.
-    """
+    Raises ValueError: two functions have the same name."""
     every = (*_readings(), *of_signals(), *(function for app in apps().values() for function in app.functions))
     names = [function.name for function in every]
     twice = {name for name in names if names.count(name) > 1}
@@ -146,11 +144,7 @@ def _by_screen() -> Mapping[str, App]:
 
 
 def function_named(name: str) -> CarFunction:
-    """The function of that name.
-
-    Raises:
-        ActionError: there is none.
-    """
+    """The function of that name. Raises ActionError: there is none."""
     if name not in functions():
         raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim show functions")))
     return functions()[name]

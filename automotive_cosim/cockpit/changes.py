@@ -32,11 +32,7 @@ class CarChange:
 
 
 def schedule(changes: Iterable[CarChange]) -> tuple[CarChange, ...]:
-    """The changes in chronological order.
-
-    Raises:
-        UserError: a change is impossible.
-    """
+    """The changes in chronological order. Raises UserError: a change is impossible."""
     return tuple(sorted(map(_checked, changes), key=lambda change: change.at_s))
 
 

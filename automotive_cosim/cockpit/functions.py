@@ -112,9 +112,7 @@ class Argument:
     def read(self, function: str, value: Any) -> Any:
         """The value, converted where nothing is lost.
 
-        Raises:
-            ActionError: a wrong type, or out of its range or choices.
-        """
+        Raises ActionError: a wrong type, or out of its range or choices."""
         converted = _CONVERTED[self.schema["type"]](value)
         if converted is None:
             wanted = self.schema["type"]
@@ -166,9 +164,7 @@ class CarFunction:
     def read(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """The arguments, checked against the schema and converted where nothing is lost.
 
-        Raises:
-            ActionError: one is missing, unknown, of another type or out of its range.
-        """
+        Raises ActionError: one is missing, unknown, of another type or out of its range."""
         known = {each.name: each for each in self.parameters}
         given = {
             str(name): value

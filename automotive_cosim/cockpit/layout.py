@@ -27,21 +27,13 @@ FULL = 1232
 
 @lru_cache(maxsize=2048)
 def column(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
-    """The boxes of the parts, one above the other.
-
-    Raises:
-        ValueError: they are higher than the box.
-    """
+    """The boxes of the parts, one above the other. Raises ValueError: they are higher than the box."""
     return tuple(Rect(rect.x, rect.y + top, rect.width, end - top) for top, end in _edges(rect.height, parts))
 
 
 @lru_cache(maxsize=2048)
 def row(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
-    """The boxes of the parts, side by side.
-
-    Raises:
-        ValueError: they are wider than the box.
-    """
+    """The boxes of the parts, side by side. Raises ValueError: they are wider than the box."""
     return tuple(Rect(rect.x + left, rect.y, end - left, rect.height) for left, end in _edges(rect.width, parts))
 
 
@@ -49,9 +41,7 @@ def panes(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
     """The parts of a screen, a gap apart: side by side, in a narrow box narrower, or in a box taller than wide one
     above the other, as high as each other.
 
-    Raises:
-        ValueError: they are wider than the box.
-    """
+    Raises ValueError: they are wider than the box."""
     if rect.height > rect.width:
         return rect.rows(len(parts), GAP)
     if rect.width < FULL:

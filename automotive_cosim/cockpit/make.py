@@ -65,7 +65,6 @@ class OwnScreen:
 
     @property
     def text(self) -> Text:
-        """Its title."""
         return Text(self.title[0], {}, "make")
 
 

@@ -128,7 +128,6 @@ class Enter(Message):
         return None if self.then is None else self.then.command
 
     def perform(self, state: State) -> Feedback:
-        """The message's effect, without the keyboard."""
         Focus("").perform(state)
         folded = Feedback(FeedbackCode.OK, FOLDED)
         if self.then is None:

@@ -103,7 +103,6 @@ class _Brush:
         self.line(((x, y), _around(x, y, turn, length)), fill, wide)
 
     def text(self, x: float, y: float, text: str, size: int, fill: Colour, anchor: str = "mm") -> None:
-        """A text around a point."""
         self.pen.text(
             (x * self.fine, y * self.fine), text, fill, face(text, Weight.BOLD, size * self.fine), anchor=anchor
         )

@@ -14,11 +14,7 @@ _PACKAGE = "automotive_cosim.cockpit.apps"
 
 @cache
 def apps() -> Mapping[str, App]:
-    """Every app by its name, in their order.
-
-    Raises:
-        ValueError: two apps or two screens have the same name.
-    """
+    """Every app by its name, in their order. Raises ValueError: two apps or two screens have the same name."""
     here = list(files(_PACKAGE).iterdir())
     modules = [
         each.name.removesuffix(".py") for each in here if each.name.endswith(".py") and each.name != "__init__.py"

@@ -1,36 +1,45 @@
-"""Updates the car's signals, air, glass and battery from the surroundings."""
+"""Updates the car's signals, air, glass and battery from the surroundings, and reads what its sensors say."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from datetime import timedelta
+from typing import Any
 
 from automotive_cosim.cockpit.apps.settings.state import wifi
 from automotive_cosim.cockpit.cabin import Air, Cabin
 from automotive_cosim.cockpit.changes import CarChange, step
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.notices import TYRES
+from automotive_cosim.cockpit.occupants import in_words
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.sensor_range import NEWS_EVERY_S, RADAR_M
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
     DRIVE,
+    ENERGY,
     GLASS,
     HMI,
     HVAC,
+    LIGHTS,
     LINK,
+    MEDIA,
     MOTION,
     OUTSIDE,
     SEAT,
     LeafKind,
+    Signal,
     named,
 )
 from automotive_cosim.cockpit.sky import feel
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind
+from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import DARK_BELOW_DEG, SEAT_W
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, OtherVehicle, Surroundings, Weather
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, OtherVehicle, Surroundings, VehicleState, Weather
 
 SEAT_LOSS_W_K = 3.0
 """Heat transfer to the cabin and the driver: 20 K at full power; an assumption."""
@@ -227,3 +236,59 @@ def _make(state: State, change: CarChange, since_s: float, dt_s: float) -> None:
         value = step(change, signals[signal], since_s, dt_s)
         if signal.kind is not LeafKind.ACTUATOR or state.vehicle.command(signal, value):
             signals[signal] = signal.check(value)
+
+
+def readings(state: State) -> VehicleState:
+    """The present readings."""
+    now = state.signals
+    return VehicleState(
+        speed_kmh=now[MOTION.SPEED],
+        gear=now[MOTION.GEAR],
+        restrictions=int(state.restrictions),
+        ambient_temperature_c=now[OUTSIDE.TEMPERATURE],
+        cabin_temperature_c=now[HVAC.CABIN_TEMPERATURE],
+        cabin_humidity_pct=now[HVAC.CABIN_HUMIDITY],
+        rain_intensity_pct=now[BODY.RAIN_INTENSITY],
+        driver_temperature_set_c=now[HVAC.DRIVER_TEMPERATURE],
+        fan_speed_pct=now[HVAC.FAN_SPEED],
+        is_low_beam_on=now[LIGHTS.LOW_BEAM],
+        is_high_beam_on=now[LIGHTS.HIGH_BEAM],
+        is_front_fog_on=now[LIGHTS.FRONT_FOG],
+        is_rear_fog_on=now[LIGHTS.REAR_FOG],
+        is_hazard_on=now[LIGHTS.HAZARD],
+        energy_level_pct=now[ENERGY.LEVEL],
+        range_km=now[ENERGY.RANGE] / 1000,
+        speed_limit_sign_kmh=now[ADAS.LIMIT_SIGN],
+        leader_gap_m=now[ADAS.LEADER_DISTANCE],
+        leader_time_to_collision_s=now[ADAS.LEADER_TIME_TO_COLLISION],
+        aboard=in_words(now),
+    )
+
+
+USED: tuple[Signal[Any], ...] = (ENERGY.LEVEL, ENERGY.RANGE, MEDIA.PLAYED, MEDIA.TRACK, MEDIA.ARTIST)
+BODIES: tuple[Signal[Any], ...] = (*TYRES, SEAT.DRIVER_TEMPERATURE, SEAT.PASSENGER_TEMPERATURE)
+
+
+def put_back(state: State, departed: State, surroundings: Surroundings, way: timedelta, *, with_air: bool) -> None:
+    """Puts a state back and senses the surroundings anew.
+
+    Args:
+        state: changed in place.
+        departed: the same cockpit's at departure.
+        surroundings: the present ones, at the departure's time of day.
+        with_air: whether air, glass, seats and tyres are put back too.
+    """
+    for signal in (*USED, *(BODIES if with_air else ())):
+        state.signals[signal] = departed.signals[signal]
+    if with_air:
+        state.cabin, state.tyres = departed.cabin, departed.tyres
+    departed_s, state.outside = state.departed_s, None  # the trip computer starts anew
+    if state.heard is not None:
+        state.heard = replace(state.heard, local_time=state.heard.local_time - way)
+    sense(state, surroundings, 0.0)
+    state.departed_s = departed_s  # what is still to arrive arrives when it would have
+    for data in state.apps:
+        data.put_back(state, departed)
+    state.notices = tuple(
+        replace(notice, clock=state.clock) for notice in state.notices if notice.icon is not Icon.CALL_MISSED
+    )

@@ -69,9 +69,7 @@ class Signal(Generic[T]):
     def check(self, value: object) -> T:
         """The value to store; an int becomes a float if floats are expected.
 
-        Raises:
-            SignalError: wrong type, out of range or not among the allowed values.
-        """
+        Raises SignalError: wrong type, out of range or not among the allowed values."""
         if value is None and self.optional:
             return cast(T, None)
         expected = float if self.optional else type(self.default)
@@ -480,11 +478,7 @@ class LINK:
 
 
 def named(path: str) -> Signal[Any]:
-    """The signal of that path.
-
-    Raises:
-        UnknownNameError: there is no such signal.
-    """
+    """The signal of that path. Raises UnknownNameError: there is no such signal."""
     try:
         return CATALOGUE[path]
     except KeyError:
@@ -534,7 +528,6 @@ class Signals:
         return dict(zip(ACTUATORS, _actuators(self._values), strict=True))
 
     def reset(self) -> None:
-        """Resets all to their defaults."""
         self._values = {path: signal.default for path, signal in CATALOGUE.items()}
 
     def copy(self) -> Signals:

@@ -44,12 +44,10 @@ class ScreenSize(StrEnum):
 
     @property
     def width(self) -> int:
-        """Width in logical pixels."""
         return int(self.partition("x")[0])
 
     @property
     def height(self) -> int:
-        """Height in logical pixels."""
         return int(self.partition("x")[2])
 
     @property

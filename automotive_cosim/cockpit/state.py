@@ -263,7 +263,6 @@ class State:
 
     @property
     def signals(self) -> Signals:
-        """The vehicle's signals."""
         return self.vehicle.signals
 
     def beside(self, screen: str) -> bool:

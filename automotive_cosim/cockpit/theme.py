@@ -230,11 +230,7 @@ CAP_HEIGHT = 0.711
 
 @lru_cache(maxsize=128)
 def font(weight: Weight, size: int) -> ImageFont.FreeTypeFont:
-    """A face at a size in pixels.
-
-    Raises:
-        SetupError: the package with the fonts is missing.
-    """
+    """A face at a size in pixels. Raises SetupError: the package with the fonts is missing."""
     package, folder = _HOMES.get(weight, ("font_roboto", "files"))
     spec = find_spec(package)
     if spec is None or not spec.submodule_search_locations:

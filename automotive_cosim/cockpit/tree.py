@@ -121,9 +121,7 @@ def shown_by(controls: tuple[ShelfItem, ...], key: str) -> ShelfItem | None:
 def make_named(name: CarMake) -> Make:
     """A make by its name, or by its file.
 
-    Raises:
-        UserError: the file cannot be used, or has changed since it was named.
-    """
+    Raises UserError: the file cannot be used, or has changed since it was named."""
     if name is CarMake.HOME:
         return HOME
     if not name.file:
@@ -138,9 +136,7 @@ def make_named(name: CarMake) -> Make:
 def resolved(word: str) -> str:
     """What was given for the make: a file, once it has been checked, becomes ``FILE@SHA-256``.
 
-    Raises:
-        UserError: the file cannot be used, with its line.
-    """
+    Raises UserError: the file cannot be used, with its line."""
     if not word.endswith(".toml"):
         return word
     document = read_toml(Path(word))
@@ -155,9 +151,7 @@ def _digest(document: Document) -> str:
 def check(document: Document) -> None:
     """Looks up all that a make's file names.
 
-    Raises:
-        UserError: with file and line: what does not exist, or a screen that nothing leads to.
-    """
+    Raises UserError: with file and line: what does not exist, or a screen that nothing leads to."""
     make, wrong = document.read(Make), document.refused
     for steps, kind, name, known in _names(make):
         if name not in known:

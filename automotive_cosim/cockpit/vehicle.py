@@ -109,9 +109,7 @@ class Vehicle:
         Returns:
             Why the car does not do it; empty if it does. A refused command changes nothing.
 
-        Raises:
-            SignalError: the value is illegal.
-        """
+        Raises SignalError: the value is illegal."""
         value = signal.check(value)
         refusal = self._refusal(signal, value)
         if refusal:

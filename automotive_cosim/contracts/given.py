@@ -271,7 +271,7 @@ class ToldPolicy(StrEnum):
 
     NONE = "none"
     HOUSE = "house"
-    """The house rules (``interface.policy``)."""
+    """The house rules (``interface.house_rules``)."""
 
 
 class Language(StrEnum):

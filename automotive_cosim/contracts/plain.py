@@ -22,9 +22,7 @@ Tell = Callable[[str, float | None], None]
 def lon_lat(text: str) -> tuple[float, float] | None:
     """Longitude and latitude in degrees from ``"LON,LAT"``; None if it is something else.
 
-    Raises:
-        ValueError: they are two numbers, but no place on earth; the message says so.
-    """
+    Raises ValueError: they are two numbers, but no place on earth; the message says so."""
     try:
         lon_deg, lat_deg = map(float, text.split(","))
     except ValueError:

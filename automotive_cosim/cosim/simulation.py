@@ -90,9 +90,7 @@ class CoSimulation:
     def advance(self, duration_s: float) -> tuple[Moment, ...]:
         """Lets time pass, in ticks; less than requested if the ego's drive ends.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         moments = []
         left_s = duration_s
         while left_s > 1e-9 and self.moment.driving.end is None:
@@ -109,9 +107,7 @@ class CoSimulation:
     def view(self) -> npt.NDArray[np.uint8]:
         """The view through the windshield now, or behind the car in reverse: (360, 640, 3), RGB, read-only.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         moment, signals = self.moment, self.cockpit.signals
         driving = moment.driving
         sun = None

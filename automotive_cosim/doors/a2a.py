@@ -121,7 +121,6 @@ class Assessor(AgentExecutor):
         return self._stops.keys()
 
     def close(self) -> None:
-        """Ends every assessment."""
         for stop in self._stops.values():
             stop.set()
 
@@ -228,10 +227,6 @@ def make_app(assessor: Assessor, host: str, port: int, url: str) -> Guarded:
 
 
 def serve(host: str, port: int, url: str, workers: int) -> None:
-    """Serves until it is interrupted.
-
-    Raises:
-        SystemExit: the address cannot be used.
-    """
+    """Serves until it is interrupted. Raises SystemExit: the address cannot be used."""
     app = make_app(Assessor(workers), host, port, url)
     uvicorn.run(app, host=host, port=port, log_level="warning", timeout_graceful_shutdown=GRACE_S, http=Punctual)

@@ -60,9 +60,7 @@ class Assessment:
 def read_assessment(text: str) -> Assessment:
     """Reads an assessment request: AgentBeats' form, or CAR-bench's with ``agent_under_test``.
 
-    Raises:
-        UserError: it is none, or its plan cannot be run.
-    """
+    Raises UserError: it is none, or its plan cannot be run."""
     try:
         asked = json.loads(text)
     except (ValueError, RecursionError) as error:

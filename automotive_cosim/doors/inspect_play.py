@@ -1,8 +1,8 @@
 """What both of Inspect's tasks share: the tool ``act``, and an episode from start to verdict."""
 
-# pyright: reportMissingImports=false
 from __future__ import annotations
 
+# pyright: reportMissingImports=false
 import base64
 import json
 from collections.abc import Callable
@@ -29,11 +29,7 @@ OUTCOME = "automotive_cosim/outcome"
 
 
 def seeds_of(given: int | str | list[int]) -> list[int]:
-    """Seeds, one or several.
-
-    Raises:
-        UserError: not whole numbers from 0.
-    """
+    """Seeds, one or several. Raises UserError: not whole numbers from 0."""
     numbers = words(given)
     if not all(number.isdecimal() for number in numbers):
         raise UserError(f"seeds are {', '.join(numbers)}; give whole numbers from 0, separated by commas")
@@ -73,11 +69,7 @@ async def played(
 
 
 def outcome_of(state: TaskState) -> Json:
-    """The outcome of a sample's episode.
-
-    Raises:
-        InfrastructureError: it was not judged.
-    """
+    """The outcome of a sample's episode. Raises InfrastructureError: it was not judged."""
     stored: Json | None = state.store.get(OUTCOME)
     if stored is None:
         raise InfrastructureError("the episode was not judged")

@@ -7,9 +7,9 @@ it is. Needs the package ``inspect-ai``
 (extra ``harnesses``).
 """
 
-# pyright: reportMissingImports=false
 from __future__ import annotations
 
+# pyright: reportMissingImports=false
 import math
 from collections.abc import Callable, Sequence
 

@@ -104,11 +104,7 @@ class _CockpitServer(MCPServer[Any]):
     async def call_tool(
         self, name: str, arguments: dict[str, Any], context: Context[Any, Any] | None = None
     ) -> CallToolResult | InputRequiredResult:
-        """Calls a tool.
-
-        Raises:
-            ToolError: it has no such argument, or it says so itself.
-        """
+        """Calls a tool. Raises ToolError: it has no such argument, or it says so itself."""
         for tool in await super().list_tools():
             known = tool.input_schema.get("properties", {})
             for unknown in arguments.keys() - known.keys() if tool.name == name else ():

@@ -15,11 +15,7 @@ NOT_ITS_OWN = TransportSecuritySettings(enable_dns_rebinding_protection=False)
 
 
 def serve_http(server: MCPServer[Any], host: str, port: int, token: str) -> None:
-    """Serves until it is interrupted.
-
-    Raises:
-        SystemExit: the address cannot be used.
-    """
+    """Serves until it is interrupted. Raises SystemExit: the address cannot be used."""
     app = server.streamable_http_app(max_request_body_size=MOST_BYTES, transport_security=NOT_ITS_OWN)
     guarded = Guarded(app, host, port, token)
     uvicorn.run(guarded, host=host, port=port, log_level="warning", http=Punctual)

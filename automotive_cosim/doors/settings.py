@@ -14,11 +14,7 @@ from automotive_cosim.formats.annotations import OneOf, Option
 
 
 def read_address(text: str) -> tuple[str, int]:
-    """A host and a port.
-
-    Raises:
-        UserError: it is no address.
-    """
+    """A host and a port. Raises UserError: it is no address."""
     host, _, port = text.rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
         raise UserError(f"--http: {text!r} is not an address; give HOST:PORT, such as 127.0.0.1:8000")

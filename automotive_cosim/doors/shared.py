@@ -81,9 +81,7 @@ def _sparing(each: inspect.Parameter, choices: Collection[str] = ()) -> inspect.
 def conditions_of(words: Mapping[str, str]) -> Conditions:
     """The conditions of a door, in words. Nobody names files of this machine through a door.
 
-    Raises:
-        UserError: there is no such condition or value.
-    """
+    Raises UserError: there is no such condition or value."""
     known = {each.name: each for each in INPUTS}
     for name, word in words.items():
         if name not in known:
@@ -123,9 +121,7 @@ def trial(
         under: the conditions.
         errands: whether people aboard also ask for things on a drive.
 
-    Raises:
-        UserError: there is not one of task and drive, or something that does not fit it.
-    """
+    Raises UserError: there is not one of task and drive, or something that does not fit it."""
     if bool(task) == bool(drive):
         raise UserError(f"give a task or a drive, one of the two; came task {shown(task)} and drive {shown(drive)}")
     if drive:
@@ -148,9 +144,7 @@ def own_scenario(name: str | None, folder: Path | None) -> str | None:
         name: as it came; None or empty for the task's own.
         folder: whose folders are the owner's scenarios; None for none.
 
-    Raises:
-        UnknownNameError: there is no such scenario.
-    """
+    Raises UnknownNameError: there is no such scenario."""
     if not name or name in shipped():
         return name
     own = {} if folder is None else {each.parent.name: each.parent for each in folder.glob("*/scenario.toml")}

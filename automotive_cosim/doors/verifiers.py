@@ -195,11 +195,7 @@ class CockpitTaskset(vf.Taskset[CockpitTask, CockpitConfig]):
     """The tasks at the cockpit."""
 
     def load(self) -> Iterator[CockpitTask]:
-        """A task for each task, half and seed.
-
-        Raises:
-            UserError: something of the config does not exist.
-        """
+        """A task for each task, half and seed. Raises UserError: something of the config does not exist."""
         config = self.config
         told = config.model_dump(include={each.name for each in INPUTS})
         under = conditions_of(told)

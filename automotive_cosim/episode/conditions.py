@@ -211,9 +211,7 @@ class Conditions:
     def named(cls, values: Mapping[str, object]) -> Conditions:
         """Conditions by name, with values as words or numbers.
 
-        Raises:
-            UserError: there is no such condition or value.
-        """
+        Raises UserError: there is no such condition or value."""
         return cls(**{name: condition(name).value(value) for name, value in values.items()})
 
     @property
@@ -293,11 +291,7 @@ class Condition:
         return str(value) if self.choices else f"{value:g} s"
 
     def value(self, given: object) -> Any:
-        """A value from a word, or from a number.
-
-        Raises:
-            UserError: it has no such value.
-        """
+        """A value from a word, or from a number. Raises UserError: it has no such value."""
         kind, *annotations = get_args(self.kind)
         if self.name == "make" and isinstance(given, str):
             from automotive_cosim.cockpit.tree import resolved  # the whole cockpit, for a file of one's own
@@ -334,11 +328,7 @@ INPUTS = tuple(each for each in TABLE if not each.words.is_speed)
 
 
 def condition(name: str) -> Condition:
-    """A line of the table.
-
-    Raises:
-        UnknownNameError: there is none of that name.
-    """
+    """A line of the table. Raises UnknownNameError: there is none of that name."""
     found = next((each for each in TABLE if each.name == name), None)
     if found is None:
         raise UnknownNameError("condition", name, [each.name for each in TABLE])

@@ -91,9 +91,7 @@ class Episode(JudgedSession):
     def take_over(cls, hand_over: HandOver, setup: SessionSetup, observer: Observer | None = None) -> Episode:
         """The episode that begins at a hand-over, and takes over its drive.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         instance, world = hand_over.instance, hand_over.world
         if setup.max_steps is None:
             setup = replace(setup, max_steps=instance.task.max_steps)

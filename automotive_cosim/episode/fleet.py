@@ -53,9 +53,7 @@ class Fleet(Generic[R]):
     def run(self) -> dict[str, R]:
         """Lets the road run until a car has done what it was doing; the results of those that have.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         while self._acts and not self._done:
             until_s = min(act.wakes_s for act in self._acts.values()) + self._step_s / 2
             for car in [car for car, act in self._acts.items() if act.wakes_s <= until_s]:

@@ -22,9 +22,7 @@ MOST_CHARACTERS = 16_000
 def resolved(word: str) -> str:
     """What was given for the prompt: a file becomes ``FILE@SHA-256``; anything else stays as it is.
 
-    Raises:
-        UserError: the file cannot be used.
-    """
+    Raises UserError: the file cannot be used."""
     if not word.endswith(SUFFIXES):
         return word
     path = Path(word).as_posix()
@@ -34,9 +32,7 @@ def resolved(word: str) -> str:
 def instructions(prompt: PromptLength) -> str:
     """What stands in place of the standard prompt's instructions; empty for a prompt of the package.
 
-    Raises:
-        UserError: the file cannot be used, or is no longer what it was.
-    """
+    Raises UserError: the file cannot be used, or is no longer what it was."""
     if not prompt.file:
         return ""
     text = _read(prompt.file)

@@ -131,17 +131,13 @@ class Session:
     def think(self, seconds: float) -> None:
         """Lets the time pass that the agent takes to answer; what it then does refers to the screen that it saw.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         driven(self.thinking(seconds))
 
     def step(self, action: Action) -> None:
         """Performs one action, lets its time pass and observes.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         driven(self.stepping(action))
 
     def thinking(self, seconds: float) -> TakesTime[None]:
@@ -427,7 +423,7 @@ def beginning(
     noise_db = level_db(first) if is_by_ear else None
     (wish,) = reaching((goal,), setup, noise_db)
     make = setup.conditions.make
-    world.cockpit.fit(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
+    world.cockpit.resize(setup.conditions.screen, None if make is CarMake.DRAWN else make_named(make))
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, TOLD_HEARD if is_by_ear else "")
     elements, observation = _seen(
@@ -468,9 +464,7 @@ def beginning(
 def reaching(said: tuple[str, ...], setup: SessionSetup, noise_db: float | None) -> tuple[str, ...]:
     """What reaches the agent of words that are said in so much noise; None where they are text.
 
-    Raises:
-        InfrastructureError: they have not been recognised yet, and the extra ``voice`` is missing.
-    """
+    Raises InfrastructureError: they have not been recognised yet, and the extra ``voice`` is missing."""
     if noise_db is None:
         return said
     if setup.conditions.hear is Hearing.AUDIO:
@@ -602,9 +596,7 @@ class Baseline:
     def until(self, time_s: float) -> tuple[Moment, ...]:
         """Its moments from the hand-over to the first whole tick at or after that time, or to the end of its drive.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         self.follow(time_s)
         last = next(
             (i for i, moment in enumerate(self._moments) if moment.time_s >= time_s - ROUNDING_S),
@@ -618,11 +610,7 @@ class Baseline:
         return list(later)[::-1]
 
     def follow(self, time_s: float) -> None:
-        """Drives to that simulation time.
-
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        """Drives to that simulation time. Raises TrafficError: the traffic simulation failed."""
         while self._is_before(time_s):
             assert self._own is not None, "the episode's drive went on without the baseline run"
             self._moments += self._own.advance(TICK_S)
@@ -650,11 +638,7 @@ class JudgedSession(Session, ABC):
         """Whether it has been judged: false while it runs, and if it broke."""
 
     def drive_on(self) -> None:
-        """What is still driven once it is over, for the record.
-
-        Raises:
-            InfrastructureError: the road failed.
-        """
+        """What is still driven once it is over, for the record. Raises InfrastructureError: the road failed."""
 
     @property
     def baseline_moments(self) -> tuple[Moment, ...]:

@@ -18,11 +18,7 @@ only where the right limit is posted."""
 
 
 def read_origin(text: str) -> tuple[float, float]:
-    """A longitude and latitude in degrees.
-
-    Raises:
-        UserError: it is no position on earth.
-    """
+    """A longitude and latitude in degrees. Raises UserError: it is no position on earth."""
     try:
         found = lon_lat(text)
     except ValueError as error:

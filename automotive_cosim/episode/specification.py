@@ -100,17 +100,13 @@ class EpisodeSpec(EpisodeSettings):
     def check(self) -> None:
         """Tries the values; whether there is such a task or scenario is found out where those are looked up.
 
-        Raises:
-            UserError: one of the wrong type or out of its range.
-        """
+        Raises UserError: one of the wrong type or out of its range."""
         checked(type(self), asdict(self), lambda steps: ("the episode", dotted(steps)))
 
     def session(self, channels: frozenset[Channel] = ALL) -> SessionSetup:
         """What a session begins with, for an agent that wants these channels.
 
-        Raises:
-            UserError: it could see nothing of the screen.
-        """
+        Raises UserError: it could see nothing of the screen."""
         return SessionSetup(channels, self.conditions, self.max_steps, self.max_sim_s, self.action_cost_s)
 
 

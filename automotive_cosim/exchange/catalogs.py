@@ -66,11 +66,7 @@ class Catalogs:
     """The catalogs of a file."""
 
     def __init__(self, root: XmlElement) -> None:
-        """Notes where they are.
-
-        Raises:
-            ScenarioError: a place has no folder.
-        """
+        """Notes where they are. Raises ScenarioError: a place has no folder."""
         self._folders: list[Path] = []
         self._read: dict[Path, XmlElement] = {}
         rows = table()
@@ -83,9 +79,7 @@ class Catalogs:
     def complete(self, element: XmlElement, scope: Mapping[str, str]) -> None:
         """Checks an element and all in it; gives them their parameters; replaces references by what they name.
 
-        Raises:
-            ScenarioError: something is refused, unknown, or not to be found.
-        """
+        Raises ScenarioError: something is refused, unknown, or not to be found."""
         row = table().get(element.tag, NAMELESS)
         element.scope = scope = _declared(element, scope)
         for name in element.attributes:
@@ -160,11 +154,7 @@ def _declared(element: XmlElement, scope: Mapping[str, str]) -> Mapping[str, str
 
 
 def unread(element: XmlElement) -> None:
-    """Checks that everything that is carried out has been asked for.
-
-    Raises:
-        ScenarioError: something has not.
-    """
+    """Checks that everything that is carried out has been asked for. Raises ScenarioError: something has not."""
     row = table().get(element.tag, NAMELESS)
     for name in element.attributes:
         if row.attributes.get(name) == CARRIED and name not in element.taken:

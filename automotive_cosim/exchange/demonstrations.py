@@ -143,9 +143,7 @@ def _words(env: FlatEnv, action: Action) -> str:
 def write(steps: Iterable[Demonstrated], target: Path) -> int:
     """Writes demonstrations as Parquet, and returns how many steps they have.
 
-    Raises:
-        SetupError: the extra ``reports`` is not installed.
-    """
+    Raises SetupError: the extra ``reports`` is not installed."""
     try:
         import pandas as pd
     except ImportError as error:

@@ -22,7 +22,7 @@ import sumolib
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import unread
-from automotive_cosim.exchange.places import RoadPlaces
+from automotive_cosim.exchange.positions import RoadPositions
 from automotive_cosim.exchange.roads import mirror, read_roads
 from automotive_cosim.exchange.storyboard import ReadStory, ScriptEntity, Waited, read_story
 from automotive_cosim.formats import bounds
@@ -78,7 +78,7 @@ def import_openscenario(
     if not source.is_file():
         raise ScenarioError(f"there is no road {source}, which {file} needs; give --network a SUMO network")
     with appearing(out, replaces=replaces) as folder:
-        places = RoadPlaces(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
+        places = RoadPositions(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
         has_place = places.net.hasGeoProj() and not read_network(folder / NET).unplaced
         text = scenario_text(out.name, file, story, places, country, has_place=has_place)
         write_whole(folder / "scenario.toml", text)
@@ -143,13 +143,11 @@ def _for_netconvert(source: Path, ours: Path) -> bool:
 
 
 def scenario_text(
-    name: str, file: Path, story: ReadStory, places: RoadPlaces, country: str, *, has_place: bool
+    name: str, file: Path, story: ReadStory, places: RoadPositions, country: str, *, has_place: bool
 ) -> str:
     """The ``scenario.toml`` of what a file says.
 
-    Raises:
-        ScenarioError: something has no place on the road, acts on the ego, or is not imported.
-    """
+    Raises ScenarioError: something has no place on the road, acts on the ego, or is not imported."""
     mine = story.entities[story.ego]
     if mine.actions:
         raise mine.actions[0]["element"].refused(f"acts on {story.ego}, which SUMO's driver drives; remove it")
@@ -207,14 +205,14 @@ def scenario_text(
     return text
 
 
-def _start(entity: ScriptEntity, story: ReadStory, places: RoadPlaces) -> tuple[Any, float]:
+def _start(entity: ScriptEntity, story: ReadStory, places: RoadPositions) -> tuple[Any, float]:
     """The lane on which a vehicle is at first, and how far along it its front bumper is."""
     if entity.place is None:
         raise entity.element.refused(f"named {entity.name} has no TeleportAction in Init, so that it has no place")
     return places.lane_at(places.spot(entity.place, story.entities), entity.front_m)
 
 
-def _check_room(story: ReadStory, places: RoadPlaces) -> None:
+def _check_room(story: ReadStory, places: RoadPositions) -> None:
     """Checks that SUMO lets all in at their first speeds: a follower must be able to brake behind its leader."""
     by_lane: dict[str, list[tuple[float, float, ScriptEntity]]] = {}
     for entity in story.entities.values():
@@ -245,7 +243,7 @@ def _wanted(story: ReadStory) -> list[dict[str, Any]]:
 
 
 def _scripted(
-    entity: ScriptEntity, story: ReadStory, places: RoadPlaces, signals: list[dict[str, Any]]
+    entity: ScriptEntity, story: ReadStory, places: RoadPositions, signals: list[dict[str, Any]]
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
     lane, at_m = _start(entity, story, places)
     way = places.way(entity.name, lane.getEdge(), [places.spot(goal, story.entities) for goal in entity.goals])
@@ -289,7 +287,7 @@ def _called(name: str, story: ReadStory) -> str:
     return f"{name} of the file" if name == THE_EGO else name
 
 
-def _waits(condition: Waited, group: int, story: ReadStory, places: RoadPlaces) -> dict[str, Any]:
+def _waits(condition: Waited, group: int, story: ReadStory, places: RoadPositions) -> dict[str, Any]:
     told = {key: value for key, value in condition.items() if key not in ("element", "position") and value}
     told |= {
         key: _called(told[key], story)

@@ -63,9 +63,7 @@ def write_openscenario(recording: Recording, target: Path, version: str = "1.3",
         version: of the standard, one of ``VERSIONS``.
         road: the road's OpenDRIVE file, beside the target; without it, the file names neither road nor lights.
 
-    Raises:
-        UserError: the version cannot be written.
-    """
+    Raises UserError: the version cannot be written."""
     if version not in VERSIONS:
         raise UserError(f"OpenSCENARIO {version} cannot be written; give one of {', '.join(VERSIONS)}")
     root = _scenario(recording, version, road)

@@ -68,9 +68,7 @@ BULB_M = 0.2
 def trace_name(recording: Recording) -> str:
     """The name that OSI recommends, without its end: time of the first second, kind, versions, number of messages.
 
-    Raises:
-        SetupError: the extra ``safety`` is not installed.
-    """
+    Raises SetupError: the extra ``safety`` is not installed."""
     osi, protobuf = (version.replace(".", "") for version in _versions())
     begins = recording.road.seconds[0].local_time
     at = datetime.fromisoformat(begins).astimezone(UTC) if begins else datetime.fromtimestamp(0, UTC)
@@ -117,9 +115,7 @@ def write_osi(recording: Recording, target: Path, road: Path | None = None) -> N
 def _versions() -> tuple[str, str]:
     """Of OSI's messages, and of the package that writes them.
 
-    Raises:
-        SetupError: the extra ``safety`` is not installed.
-    """
+    Raises SetupError: the extra ``safety`` is not installed."""
     try:
         import osi_utilities  # noqa: F401, whether it is there
         from google import protobuf

@@ -53,9 +53,7 @@ class Recording:
 def read_recording(folder: Path) -> Recording:
     """Reads a folder of ``run``, or a trial's in ``pictures/`` of an evaluation.
 
-    Raises:
-        UserError: it has no recorded road, or cannot be read.
-    """
+    Raises UserError: it has no recorded road, or cannot be read."""
     path = road_in(folder)
     road = read_record(path)
     if not road.seconds:

@@ -70,9 +70,7 @@ class OpenDriveRoad:
     def pose(self, s_m: float, t_m: float) -> Pose:
         """A point beside the reference line, and the line's heading there.
 
-        Raises:
-            ScenarioError: the file has a curve that is not read.
-        """
+        Raises ScenarioError: the file has a curve that is not read."""
         found = _at(self._geometries, "s", s_m) or (self._geometries[0], 0.0)
         geometry, along_m = found
         u_m, v_m, turned = _curve(geometry, min(along_m, geometry.number("length")))
@@ -93,9 +91,7 @@ class OpenDriveRoad:
     def lanes_at(self, s_m: float) -> Mapping[int, tuple[float, float]]:
         """The lanes at a place: t of each one's middle, and its width.
 
-        Raises:
-            ScenarioError: a lane is given by its border.
-        """
+        Raises ScenarioError: a lane is given by its border."""
         middle_m = self.middle_at(s_m)
         found: dict[int, tuple[float, float]] = {}
         section = _at(self._sections, "s", s_m)
@@ -140,11 +136,7 @@ def _curve(geometry: XmlElement, along_m: float) -> Pose:
 
 
 def read_roads(path: Path) -> Mapping[str, OpenDriveRoad]:
-    """The roads of an OpenDRIVE file by their ids.
-
-    Raises:
-        ScenarioError: it cannot be read.
-    """
+    """The roads of an OpenDRIVE file by their ids. Raises ScenarioError: it cannot be read."""
     root = read_tree(path, KEPT)
     return {road.name: road for road in map(OpenDriveRoad, root.all("road"))}
 

@@ -34,9 +34,7 @@ Placed = tuple[float, ...]
 def write_trajectories(recording: Recording, target: Path) -> None:
     """Writes them; times count from the first recorded second, vehicles are numbered as they are first seen.
 
-    Raises:
-        OSError: it cannot be written.
-    """
+    Raises OSError: it cannot be written."""
     numbers: dict[str, int] = {}
     body, places = bytearray(), []
     for at_s, lines in _steps(recording):

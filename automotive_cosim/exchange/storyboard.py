@@ -83,9 +83,7 @@ def read_story(file: Path, ego: str) -> ReadStory:
         file: OpenSCENARIO XML.
         ego: name of the entity that is the cockpit's car.
 
-    Raises:
-        ScenarioError: something is outside what is imported.
-    """
+    Raises ScenarioError: something is outside what is imported."""
     root = read_tree(file)
     if root.tag != "OpenSCENARIO":
         raise root.refused("is not OpenSCENARIO XML")
@@ -204,11 +202,7 @@ def _takes(routing: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
 
 
 def route_goals(route: XmlElement) -> list[XmlElement]:
-    """The positions of a route.
-
-    Raises:
-        ScenarioError: it goes round, or has none.
-    """
+    """The positions of a route. Raises ScenarioError: it goes round, or has none."""
     if route.is_true("closed"):
         raise route.refused("has closed = true, which is not imported; end it at its last waypoint")
     goals = [waypoint.part("Position") for waypoint in route.all("Waypoint")]

@@ -37,11 +37,7 @@ def write_csv(recording: Recording, target: Path) -> None:
 
 
 def write_parquet(recording: Recording, target: Path) -> None:
-    """Writes them as Parquet.
-
-    Raises:
-        SetupError: the extra ``reports`` is not installed.
-    """
+    """Writes them as Parquet. Raises SetupError: the extra ``reports`` is not installed."""
     try:
         import pandas as pd
     except ImportError as error:
@@ -50,11 +46,7 @@ def write_parquet(recording: Recording, target: Path) -> None:
 
 
 def write_frame(frame: Any, target: Path) -> None:
-    """Writes a data frame as Parquet.
-
-    Raises:
-        SetupError: the extra ``reports`` is not installed.
-    """
+    """Writes a data frame as Parquet. Raises SetupError: the extra ``reports`` is not installed."""
     try:
         with drafted(target) as file:
             frame.to_parquet(file, index=False)

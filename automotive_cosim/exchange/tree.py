@@ -35,9 +35,7 @@ def evaluated(text: str, scope: Mapping[str, str]) -> str:
     Args:
         text: a value, ``$parameter`` or ``${expression}``.
 
-    Raises:
-        ValueError: it is no expression that can be evaluated, or names an unknown parameter.
-    """
+    Raises ValueError: it is no expression that can be evaluated, or names an unknown parameter."""
     if not text.startswith("$"):
         return text[1:] if text.startswith("\\$") else text
     if not text.startswith("${"):
@@ -89,11 +87,7 @@ class XmlElement:
         return ScenarioError(f"{self.path} line {self.line}: <{self.tag}> {why}")
 
     def only(self, *tags: str) -> list[XmlElement]:
-        """Its parts, all of which have one of these tags.
-
-        Raises:
-            ScenarioError: one has another.
-        """
+        """Its parts, all of which have one of these tags. Raises ScenarioError: one has another."""
         for part in self.parts:
             if part.tag not in tags:
                 raise part.refused(f"in <{self.tag}> is outside the subset that is imported here; remove it")
@@ -106,33 +100,21 @@ class XmlElement:
         return [part for part in self.parts if part.tag == tag]
 
     def find(self, tag: str) -> XmlElement | None:
-        """Its only part with that tag, or None.
-
-        Raises:
-            ScenarioError: it has several.
-        """
+        """Its only part with that tag, or None. Raises ScenarioError: it has several."""
         found = self.all(tag)
         if len(found) > 1:
             raise found[1].refused(f"is the second in <{self.tag}>, which can have one")
         return found[0] if found else None
 
     def one(self, *tags: str) -> XmlElement:
-        """Its only part, with one of these tags.
-
-        Raises:
-            ScenarioError: it has none, several or another.
-        """
+        """Its only part, with one of these tags. Raises ScenarioError: it has none, several or another."""
         found = self.only(*tags)
         if len(found) != 1:
             raise self.refused(f"has {len(found)} parts; it needs one of {', '.join(tags)}")
         return found[0]
 
     def part(self, tag: str) -> XmlElement:
-        """Its only part with that tag.
-
-        Raises:
-            ScenarioError: it has none, or several.
-        """
+        """Its only part with that tag. Raises ScenarioError: it has none, or several."""
         found = self.find(tag)
         if found is None:
             raise self.refused(f"has no {tag}")
@@ -141,9 +123,7 @@ class XmlElement:
     def beside(self, name: str) -> Path:
         """The file or folder that an attribute names: beside this file, below it, or in a folder next to its own.
 
-        Raises:
-            ScenarioError: the attribute is missing, or leads elsewhere on this machine.
-        """
+        Raises ScenarioError: the attribute is missing, or leads elsewhere on this machine."""
         given, here = self.text(name), self.path.resolve().parent
         there, below = Path(here.anchor), Path().parts
         with suppress(OSError, ValueError):
@@ -163,9 +143,7 @@ class XmlElement:
     def text(self, name: str, otherwise: str | None = None) -> str:
         """The value of an attribute, with the values of parameters.
 
-        Raises:
-            ScenarioError: it is missing, or an expression that cannot be evaluated.
-        """
+        Raises ScenarioError: it is missing, or an expression that cannot be evaluated."""
         self.taken.add(name)
         value = self.attributes.get(name, otherwise)
         if value is None:
@@ -176,11 +154,7 @@ class XmlElement:
             raise self.refused(f"has {name} = {value}, {error}") from error
 
     def number(self, name: str, otherwise: float | None = None) -> float:
-        """The value of an attribute as a finite number.
-
-        Raises:
-            ScenarioError: it is missing, or no such number.
-        """
+        """The value of an attribute as a finite number. Raises ScenarioError: it is missing, or no such number."""
         self.taken.add(name)
         if otherwise is not None and name not in self.attributes:
             return otherwise
@@ -193,22 +167,14 @@ class XmlElement:
         return value
 
     def word(self, name: str, *words: str, otherwise: str | None = None) -> str:
-        """The value of an attribute, one of these.
-
-        Raises:
-            ScenarioError: it is missing, or another.
-        """
+        """The value of an attribute, one of these. Raises ScenarioError: it is missing, or another."""
         value = self.text(name, otherwise)
         if value not in words:
             raise self.refused(f"has {name} = {value!r}; what is imported is {', '.join(words)}")
         return value
 
     def is_true(self, name: str, *, otherwise: str | None = None) -> bool:
-        """The value of an attribute that is true or false.
-
-        Raises:
-            ScenarioError: it is missing, or neither.
-        """
+        """The value of an attribute that is true or false. Raises ScenarioError: it is missing, or neither."""
         return self.word(name, "true", "false", "1", "0", otherwise=otherwise) in ("true", "1")
 
 
@@ -218,9 +184,7 @@ def read_tree(path: Path, kept: frozenset[str] | None = None) -> XmlElement:
     Args:
         kept: of which elements there is a node, in that of the nearest kept one around it; None keeps all.
 
-    Raises:
-        ScenarioError: it is missing or no XML.
-    """
+    Raises ScenarioError: it is missing or no XML."""
     open_elements: list[XmlElement] = []
     roots: list[XmlElement] = []
 

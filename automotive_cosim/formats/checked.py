@@ -44,9 +44,7 @@ def checked(kind: type[T], values: object, place: Locator, error: type[UserError
         values: tables, lists, texts, numbers, dates, as in TOML and JSON.
         error: the class to raise, with one line per problem.
 
-    Raises:
-        UserError: of the given class.
-    """
+    Raises UserError: of the given class."""
     from pydantic import ValidationError
 
     from automotive_cosim.formats.schema import adapter, json_schema

@@ -25,9 +25,7 @@ def csv_text(columns: Iterable[object], rows: Iterable[Iterable[object]]) -> str
 def write_packed_csv(path: Path, columns: Iterable[object], rows: Iterable[Iterable[object]]) -> None:
     """Writes a table as gzipped CSV, whole or not at all; its folder is created.
 
-    Raises:
-        OSError: it cannot be written.
-    """
+    Raises OSError: it cannot be written."""
     make_folder(path.parent)
     write_whole(path, gzip.compress(csv_text(columns, rows).encode(), mtime=0))
 

@@ -24,9 +24,7 @@ from automotive_cosim.formats import bounds
 def read_text(path: Path, error: type[UserError] = UserError) -> str:
     """The text, with line ends as they are on Unix and without a byte order mark.
 
-    Raises:
-        UserError: of that class: it cannot be opened, is too large, or is not UTF-8.
-    """
+    Raises UserError: of that class: it cannot be opened, is too large, or is not UTF-8."""
     try:
         with open_file(path) as file:
             data = file.read(bounds.TEXT_BYTES + 1)
@@ -42,11 +40,7 @@ def read_text(path: Path, error: type[UserError] = UserError) -> str:
 
 
 def read_bytes(path: Path) -> bytes:
-    """The content of a file, at most ``bounds.WHOLE_BYTES``.
-
-    Raises:
-        OSError: it cannot be read, or is larger.
-    """
+    """The content of a file, at most ``bounds.WHOLE_BYTES``. Raises OSError: it cannot be read, or is larger."""
     with open_file(path) as file:
         data = file.read(bounds.WHOLE_BYTES + 1)
     if len(data) > bounds.WHOLE_BYTES:
@@ -127,9 +121,7 @@ def json_lines(file: IO[bytes], most_values: int | None = None, *, growing: bool
 def parse_json(text: str | bytes, most_values: int | None = None) -> Any:
     """What a text of JSON holds.
 
-    Raises:
-        ValueError: it is not JSON, nested deeper than Python reads, or holds more values.
-    """
+    Raises ValueError: it is not JSON, nested deeper than Python reads, or holds more values."""
     most = bounds.VALUES if most_values is None else most_values
     if len(text) > most and _values(text) > most:
         raise ValueError("it holds too many values")
@@ -164,11 +156,7 @@ def is_file(path: Path) -> bool:
 
 
 def file_sha256(path: Path) -> str:
-    """The hash of a file's content, in hexadecimal.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """The hash of a file's content, in hexadecimal. Raises OSError: it cannot be read."""
     found = hashlib.sha256()
     with open_file(path) as file:
         while piece := file.read(bounds.CHUNK_BYTES):
@@ -180,9 +168,7 @@ def open_file(path: Path) -> IO[bytes]:
     """Opens a regular file to read it. Anything else is refused unopened: a pipe would wait for a writer, and
     opening a device may already do something.
 
-    Raises:
-        OSError: it cannot be opened, or is not a regular file.
-    """
+    Raises OSError: it cannot be opened, or is not a regular file."""
     _refuse_special(path, path.stat().st_mode)
     # What has taken its place since does not block either.
     file = os.fdopen(os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NONBLOCK", 0)), "rb")
@@ -196,9 +182,7 @@ def open_file(path: Path) -> IO[bytes]:
 
 def _refuse_special(path: Path, mode: int) -> None:
     """
-    Raises:
-        OSError: it is not a regular file.
-    """
+    Raises OSError: it is not a regular file."""
     if stat.S_ISDIR(mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if not stat.S_ISREG(mode):
@@ -211,10 +195,8 @@ def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
     Args:
         growing: whether an archive that is cut short ends there, since somebody still writes it.
 
-    Raises:
-        OSError: it cannot be opened or is not a regular file. Reading raises it too, where an archive is damaged or
-            unpacks to too much.
-    """
+    Raises OSError: it cannot be opened or is not a regular file. Reading raises it too, where an archive is damaged
+    or unpacks to too much."""
     file = open_file(path)
     try:
         head = file.read(6)
@@ -276,11 +258,7 @@ class _Unpacked(io.RawIOBase):
 
 
 def is_utf8(path: Path) -> bool:
-    """Whether the text of a file, packed or not, is in UTF-8.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """Whether the text of a file, packed or not, is in UTF-8. Raises OSError: it cannot be read."""
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         with opened(path) as file:

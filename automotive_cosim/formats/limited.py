@@ -55,17 +55,11 @@ class LimitedProcesses:
     def call(self, what: Callable[..., T], *given: Any) -> T:
         """What the function returns there; it and what it is given are pickled.
 
-        Raises:
-            UserError: it takes more memory or time than a file of that size may, or is malformed.
-        """
+        Raises UserError: it takes more memory or time than a file of that size may, or is malformed."""
         return self._result(self._submitted(what, given))
 
     def map(self, what: Callable[..., T], *given: Iterable[Any]) -> Iterator[T]:
-        """The same for many calls, in their order.
-
-        Raises:
-            UserError: as ``call``.
-        """
+        """The same for many calls, in their order. Raises UserError: as ``call``."""
         futures = [self._submitted(what, each) for each in zip(*given, strict=True)]
         return map(self._result, futures)
 
@@ -92,9 +86,7 @@ class LimitedProcesses:
 def read_limited(read: Callable[[Path], T], path: Path, cost: Cost, error: type[UserError]) -> T:
     """What a function reads from a file, in a process of its own.
 
-    Raises:
-        UserError: of that class: it takes more than it may, or the function refuses it.
-    """
+    Raises UserError: of that class: it takes more than it may, or the function refuses it."""
     try:
         with LimitedProcesses(path, cost=cost) as processes:
             return processes.call(read, path)

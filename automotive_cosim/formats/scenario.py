@@ -205,9 +205,7 @@ class Scenario(Described):
         """The ego trip of that name, or with that number, or the only one whose name begins so; accents and case do
         not count then.
 
-        Raises:
-            UnknownNameError: the scenario has no such trip.
-        """
+        Raises UnknownNameError: the scenario has no such trip."""
         trips = self.ego.trips
         for trip in trips:
             if trip.name == name:

@@ -38,9 +38,7 @@ class Document:
     def read(self, kind: type[T]) -> T:
         """The whole file as an instance of a type.
 
-        Raises:
-            UserError: of the document's class: it does not fit; one line for each problem.
-        """
+        Raises UserError: of the document's class: it does not fit; one line for each problem."""
         return checked(kind, self.table, self.place, self.error)
 
     def refused(self, steps: Steps, why: str) -> UserError:
@@ -72,20 +70,12 @@ class Document:
 
 
 def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
-    """Reads a file.
-
-    Raises:
-        UserError: of that class: it cannot be read, or is not TOML.
-    """
+    """Reads a file. Raises UserError: of that class: it cannot be read, or is not TOML."""
     return parse(read_text(path, error), path, error)
 
 
 def parse(text: str, path: Path, error: type[UserError] = UserError) -> Document:
-    """A document from the text of a file.
-
-    Raises:
-        UserError: of that class: it is not TOML.
-    """
+    """A document from the text of a file. Raises UserError: of that class: it is not TOML."""
     try:
         if _DEEP.search(text):
             raise RecursionError

@@ -49,9 +49,7 @@ def make_folder(folder: Path, name: str = "") -> Path:
 def beneath(folder: Path, name: str) -> Path:
     """The path of a name beneath a folder, as for ``make_folder``, which need not exist.
 
-    Raises:
-        UserError: a part of the name is a link.
-    """
+    Raises UserError: a part of the name is a link."""
     for part in PurePosixPath(name).parts:
         folder /= part
         if part in ("..", "/") or folder.is_symlink():
@@ -159,9 +157,7 @@ def add_line(file: FileIO, line: str, *, lasting: bool = False) -> None:
         line: without its end.
         lasting: wait until it is on the disk.
 
-    Raises:
-        OSError: it cannot be written, e.g. because the disk is full; earlier lines are kept.
-    """
+    Raises OSError: it cannot be written, e.g. because the disk is full; earlier lines are kept."""
     whole = file.seek(0, os.SEEK_END)
     left = line.encode() + b"\n"
     try:
@@ -196,9 +192,7 @@ def mark_as_written(file: IO[bytes]) -> None:
 def remove(path: Path) -> None:
     """Removes a file, a link, or a folder with all that is in it; nothing where there is none.
 
-    Raises:
-        OSError: it cannot be removed.
-    """
+    Raises OSError: it cannot be removed."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
     else:
@@ -291,11 +285,7 @@ def _exchange(building: Path, out: Path, replaced: Path | None) -> None:
 
 
 def check_writable(folder: Path) -> None:
-    """Tries whether a folder takes anything, which its permissions do not tell.
-
-    Raises:
-        OSError: it does not.
-    """
+    """Tries whether a folder takes anything, which its permissions do not tell. Raises OSError: it does not."""
     probe = folder / f".{secrets.token_hex(8)}.part"
     probe.mkdir()
     probe.rmdir()

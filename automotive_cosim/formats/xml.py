@@ -52,9 +52,8 @@ def scan(
         copy: a file to write, with the very bytes that are read, unpacked.
         most_elements: how many elements it may have; by default ``bounds.ELEMENTS``.
 
-    Raises:
-        UserError: of that class: it cannot be read or is not such XML. What the callbacks raise passes through.
-    """
+    Raises UserError: of that class: it cannot be read or is not such XML. What the callbacks raise passes
+    through."""
     parser = expat.ParserCreate()
     parser.buffer_text = True
     encoding = "utf-8"
@@ -122,11 +121,7 @@ def without_collection() -> Iterator[None]:
 
 
 def read_tree(path: Path, *, error: type[UserError]) -> ET.Element:
-    """A file that is kept whole.
-
-    Raises:
-        UserError: of that class, as ``scan``.
-    """
+    """A file that is kept whole. Raises UserError: of that class, as ``scan``."""
     builder = ET.TreeBuilder()
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
@@ -149,9 +144,7 @@ class _FoundError(Exception):
 def read_root(path: Path, *, error: type[UserError]) -> ET.Element:
     """The root element of a file, with its attributes but nothing in it.
 
-    Raises:
-        UserError: of that class, as ``scan``.
-    """
+    Raises UserError: of that class, as ``scan``."""
     root = ET.Element("")
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
@@ -164,9 +157,5 @@ def read_root(path: Path, *, error: type[UserError]) -> ET.Element:
 
 
 def write_xml(path: Path, root: ET.Element) -> None:
-    """Writes a document whole or not at all.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Writes a document whole or not at all. Raises OSError: it cannot be written."""
     write_whole(path, ET.tostring(root, encoding="UTF-8", xml_declaration=True))

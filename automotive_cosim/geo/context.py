@@ -106,11 +106,7 @@ class GeoContext:
 
     @cached_property
     def place(self) -> Place:
-        """Country, region, city, and whose rules apply.
-
-        Raises:
-            UserError: a rule file of the country is invalid.
-        """
+        """Country, region, city, and whose rules apply. Raises UserError: a rule file of the country is invalid."""
         return NOWHERE if self.gps is None else self.atlas.place(self.gps.lon_deg, self.gps.lat_deg)
 
     @cached_property

@@ -49,9 +49,7 @@ class _WeatherSource(Protocol):
     def report(self, lon_deg: float, lat_deg: float, local_time: datetime) -> Report:
         """The weather there and then; ``local_time`` is zone-aware.
 
-        Raises:
-            UserError: nothing is known about the place.
-        """
+        Raises UserError: nothing is known about the place."""
         ...
 
 
@@ -109,9 +107,7 @@ def drawn_weather(driving: DrivingState, departure: datetime, seed: int) -> tupl
         departure: when it begins, zone-aware.
         seed: seed of the draw.
 
-    Raises:
-        ScenarioError: the network has no projection.
-    """
+    Raises ScenarioError: the network has no projection."""
     if driving.lon_deg is None or driving.lat_deg is None:
         raise ScenarioError('weather = "climate" requires a network with a projection; state [[weather]] instead')
     return (WeatherAt(0.0, Climate(seed, math.inf).report(driving.lon_deg, driving.lat_deg, departure).weather),)

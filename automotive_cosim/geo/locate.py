@@ -32,9 +32,7 @@ class Geo:
             weather: None leaves it unknown.
             local_time: zone-aware.
 
-        Raises:
-            UserError: not a position on earth.
-        """
+        Raises UserError: not a position on earth."""
         if gps is not None:
             check_position(gps.lon_deg, gps.lat_deg)
         return GeoContext(driving, gps, weather, local_time, self.atlas)

@@ -200,9 +200,7 @@ class Atlas:
 
         Without a file of its own it has its ``basics``, which also complete a file.
 
-        Raises:
-            UserError: one of the files is invalid, or a region's country has none.
-        """
+        Raises UserError: one of the files is invalid, or a region's country has none."""
         if code not in self._countries:
             codes = [name for name in self._files if name == code or name.startswith(f"{code}-")]
             found = [self._read(name) for name in codes]
@@ -250,9 +248,7 @@ def shipped() -> Atlas:
 def check_position(lon_deg: float, lat_deg: float) -> None:
     """Refuses what is not a position on earth.
 
-    Raises:
-        UserError: latitude beyond 90 or longitude beyond 180 degrees, or not a number.
-    """
+    Raises UserError: latitude beyond 90 or longitude beyond 180 degrees, or not a number."""
     if not -90.0 <= lat_deg <= 90.0:
         raise UserError(f"latitude {lat_deg:g} is not on earth; give -90 (south) to 90 (north)")
     if not -180.0 <= lon_deg <= 180.0:

@@ -127,11 +127,7 @@ def folded(name: str) -> str:
 
 
 def polygon(corners: Sequence[tuple[float, float]]) -> shapely.Polygon:
-    """A polygon from at least three longitudes and latitudes in degrees.
-
-    Raises:
-        ValueError: its edges cross.
-    """
+    """A polygon from at least three longitudes and latitudes in degrees. Raises ValueError: its edges cross."""
     area = shapely.Polygon(corners)
     if not area.is_valid:
         raise ValueError("the polygon's edges cross")

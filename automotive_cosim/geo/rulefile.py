@@ -196,9 +196,7 @@ class RuleFile:
 def read_jurisdiction(path: Path) -> Jurisdiction:
     """Reads and checks one file; the result is cached until the file changes.
 
-    Raises:
-        UserError: with file, line of the entry, and reason.
-    """
+    Raises UserError: with file, line of the entry, and reason."""
     return _read(read_text(path, UserError), path)
 
 

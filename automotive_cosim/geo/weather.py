@@ -137,9 +137,7 @@ _TYPICAL_CLOUD_PCT = {0: 0.0, 1: 20.0, 2: 50.0}
 def typical_weather(code: int, temperature_c: float = 15.0, humidity_pct: float = 70.0) -> Weather:
     """Typical weather of a code if nothing else is known: medium values of its class, our choice.
 
-    Raises:
-        UserError: a code outside the table.
-    """
+    Raises UserError: a code outside the table."""
     if code not in WMO_WORDS:
         known = ", ".join(map(str, WMO_WORDS))
         raise UserError(f"weather code {code} is not one of {known} (WMO 4677, as Open-Meteo uses it)")

@@ -118,9 +118,7 @@ def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Ac
     Args:
         arguments: by name, or the text of a JSON object; None for none.
 
-    Raises:
-        ActionError: there is no such function, or the arguments do not fit it.
-    """
+    Raises ActionError: there is no such function, or the arguments do not fit it."""
     if name == CAR:
         given = _object(name, arguments) if isinstance(arguments, str) else dict(arguments or {})
         return action_of(str(given.get("function", "")), _inner(given.get("arguments")))
@@ -156,11 +154,7 @@ def _object(name: str, text: str) -> dict[str, Any]:
 
 
 def call_of(action: Action) -> tuple[str, Json]:
-    """The call that does what an action does: name and arguments.
-
-    Raises:
-        ActionError: it acts on the screen.
-    """
+    """The call that does what an action does: name and arguments. Raises ActionError: it acts on the screen."""
     if action.action_type in BY_HAND:
         raise ActionError(f"{action.action_type} acts on the screen; no function does that")
     if action.action_type is ActionType.CALL:

@@ -10,7 +10,7 @@ from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.text import BUDGET_TOKENS, within_budget
-from automotive_cosim.interface.policy import told
+from automotive_cosim.interface.house_rules import told
 
 
 def observe(

@@ -173,9 +173,7 @@ def action_space(width: int, height: int) -> spaces.Dict:
 def decode_action(value: Mapping[str, Any]) -> Action:
     """An action of the space as a typed one. ``speed`` counts in steps of 5 km/h, 0 for none in an alert.
 
-    Raises:
-        ActionError: it is not one of the space.
-    """
+    Raises ActionError: it is not one of the space."""
     try:
         return check(_decoded(value))
     except KeyError as error:

@@ -205,9 +205,7 @@ def as_frame(
 ) -> Any:
     """The same as a pandas data frame; what is None is missing, and trials, kinds and orders are texts.
 
-    Raises:
-        SetupError: pandas is not installed.
-    """
+    Raises SetupError: pandas is not installed."""
     try:
         import pandas as pd
     except ImportError as missing:

@@ -369,9 +369,7 @@ def _check(told: Any) -> None:
 def _objects(listed: object) -> list[Json]:
     """The objects of a list; anything else in it is none of the protocol.
 
-    Raises:
-        TypeError: it is no list, nor left out.
-    """
+    Raises TypeError: it is no list, nor left out."""
     if listed is not None and not isinstance(listed, list):
         raise TypeError("a list was expected")
     return [each for each in listed or () if isinstance(each, dict)]

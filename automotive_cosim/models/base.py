@@ -71,7 +71,6 @@ class ModelReply:
     tokens_cached: int = 0
 
     def as_json(self) -> Json:
-        """The reply as a JSON object."""
         return asdict(self)
 
     @property
@@ -93,9 +92,7 @@ class ChatModel(Protocol):
     """A model that answers a conversation."""
 
     @property
-    def name(self) -> str:
-        """The name written into results."""
-        ...
+    def name(self) -> str: ...
 
     @property
     def sees_pictures(self) -> bool:
@@ -105,9 +102,8 @@ class ChatModel(Protocol):
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Answers the last message.
 
-        Raises:
-            ModelError: it cannot be reached or does not answer; the episode then says nothing about the agent.
-        """
+        Raises ModelError: it cannot be reached or does not answer; the episode then says nothing about the
+        agent."""
         ...
 
 

@@ -64,9 +64,7 @@ class ModelFile:
 def read_model_file(path: Path) -> ModelFile:
     """Reads the beginning of the file, without loading the model.
 
-    Raises:
-        UserError: there is no such file, or it is not a whole GGUF file.
-    """
+    Raises UserError: there is no such file, or it is not a whole GGUF file."""
     try:
         with open_file(path) as file:
             if file.read(4) != MAGIC:

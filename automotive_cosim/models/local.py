@@ -87,9 +87,7 @@ class Local:
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """The answer to the last message.
 
-        Raises:
-            ModelError: the question is longer than its context, or the runtime fails.
-        """
+        Raises ModelError: the question is longer than its context, or the runtime fails."""
         settings = self._settings
         limits = {name: getattr(settings, name) for name in ("seed", "temperature", "max_tokens")}
         body = self._api.body(self.file.stem, messages, limits)
@@ -105,11 +103,7 @@ class Local:
 
 
 def packaged() -> Path:
-    """The file of the first model that an installed package ships.
-
-    Raises:
-        SetupError: none is installed.
-    """
+    """The file of the first model that an installed package ships. Raises SetupError: none is installed."""
     for package in PACKAGED:
         spec = find_spec(package)
         for folder in () if spec is None else spec.submodule_search_locations or ():
@@ -125,9 +119,7 @@ def packaged() -> Path:
 def _loaded(file: str, context: int, threads: int) -> Any:
     """The runtime with a model: loaded once in a process.
 
-    Raises:
-        ModelError: the file is no model that it can run.
-    """
+    Raises ModelError: the file is no model that it can run."""
     runtime: Any = import_module("xllamacpp")
     chosen = runtime.CommonParams()
     chosen.model.path = file

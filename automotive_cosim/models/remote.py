@@ -79,9 +79,7 @@ S = TypeVar("S", bound="DataclassInstance")
 def read_settings(kind: type[S], query: str) -> S:
     """The settings of a model from ``name=value&name=value``.
 
-    Raises:
-        UserError: an unknown name, or a value that is not a number or out of range.
-    """
+    Raises UserError: an unknown name, or a value that is not a number or out of range."""
     known = {name: get_args(each) or (each,) for name, each in get_type_hints(kind).items()}
     chosen: dict[str, Any] = {}
     for name, value in parse_qsl(query, keep_blank_values=True):
@@ -185,9 +183,7 @@ class Remote:
             api: the protocol in which to ask it.
             sleep: waits for a number of seconds, between attempts and for the rate limit.
 
-        Raises:
-            SetupError: ``httpx2`` is missing.
-        """
+        Raises SetupError: ``httpx2`` is missing."""
         try:
             import httpx2  # noqa: F401, whether it is there
         except ImportError as error:
@@ -204,9 +200,7 @@ class Remote:
         """Asks, and repeats the question after a transient failure, each time after a longer pause, or after that
         which the server asks for.
 
-        Raises:
-            ModelError: refused, or every attempt failed.
-        """
+        Raises ModelError: refused, or every attempt failed."""
         started_s, queued_s, asked_s = time.monotonic(), 0.0, 0.0
         retries, failed = self._settings.retries, 0
         longest_s = LONGEST_ASKED_PAUSE_S + (retries + 1) * self._settings.timeout_s
@@ -334,9 +328,7 @@ class Remote:
 def _unpacked(body: bytes, encoding: str) -> bytes:
     """The body as it was before some servers packed it, although nobody asked for that.
 
-    Raises:
-        _PassingError: it is packed in another way, damaged, or longer than what is read.
-    """
+    Raises _PassingError: it is packed in another way, damaged, or longer than what is read."""
     packed = encoding.strip().lower()
     if packed in ("", "identity"):
         return body

@@ -54,9 +54,7 @@ class Replay:
             name: the folder or the conversation.
             api: the protocol of the model's endpoint, if it has one; by default chat completions.
 
-        Raises:
-            UserError: there is no such record, it cannot be read, or it has no answers of a model.
-        """
+        Raises UserError: there is no such record, it cannot be read, or it has no answers of a model."""
         path = Path(name)
         if path.exists() or len(path.parts) > 1:
             return cls.read(path)
@@ -68,9 +66,7 @@ class Replay:
     def read(cls, folder: Path) -> Replay:
         """The answers recorded in an episode's folder.
 
-        Raises:
-            UserError: there is no readable record, or it has no answers of a model.
-        """
+        Raises UserError: there is no readable record, or it has no answers of a model."""
         path = steps_in(folder)
         try:
             stages = list(_stages(path))
@@ -96,11 +92,7 @@ class Replay:
         return cls(answers, told["sees_pictures"], text_digest, f"{given} --agent {told['agent']}")
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
-        """The next recorded answer.
-
-        Raises:
-            ModelError: there is none left, or it answered another question.
-        """
+        """The next recorded answer. Raises ModelError: there is none left, or it answered another question."""
         number = self._count - len(self._left) + 1
         if not self._left:
             raise ModelError(f"the recording has {self._count} answers, but question {number} was asked")

@@ -12,11 +12,11 @@ from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.expected import expect, expect_stop, expect_turn
 from automotive_cosim.osm.extract import Extract
-from automotive_cosim.osm.limits import MPH_COUNTRIES, kmh_of
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.oneway import directions
 from automotive_cosim.osm.ramps import widened
 from automotive_cosim.osm.roads import MappedRoad, way_of
+from automotive_cosim.osm.speed_limits import MPH_COUNTRIES, kmh_of
 from automotive_cosim.traffic.network import Edge, class_of
 
 ROUNDING_KMH = 0.05

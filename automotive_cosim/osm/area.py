@@ -21,11 +21,7 @@ class Area(NamedTuple):
 
     @staticmethod
     def parse(text: str) -> Area:
-        """Reads ``WEST,SOUTH,EAST,NORTH``.
-
-        Raises:
-            UserError: it is not such an area, or is empty.
-        """
+        """Reads ``WEST,SOUTH,EAST,NORTH``. Raises UserError: it is not such an area, or is empty."""
         try:
             west_deg, south_deg, east_deg, north_deg = (float(part) for part in text.split(","))
         except ValueError:

@@ -14,8 +14,8 @@ from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.geo.rulefacts import RuleFacts
 from automotive_cosim.osm.country import assumed_limit_kmh
 from automotive_cosim.osm.lanes import COUNTED, built_of
-from automotive_cosim.osm.limits import CYCLE_ZONES, WALKING_ZONES, Zone, zones_of
 from automotive_cosim.osm.oneway import directions
+from automotive_cosim.osm.speed_limits import CYCLE_ZONES, WALKING_ZONES, Zone, zones_of
 from automotive_cosim.traffic.network import class_of
 from automotive_cosim.traffic.posted_limits import WALK_KMH
 

@@ -33,7 +33,6 @@ class Cameras:
     """Nodes of cameras about which something is to be told, by what."""
 
     def tell(self, what: str, camera: MappedCamera) -> None:
-        """Notes something about one."""
         self.told.setdefault(what, []).append(camera.node)
 
 

@@ -93,9 +93,7 @@ def draw(
         duration_s: departures are spread evenly over this.
         rng: source of all randomness.
 
-    Raises:
-        UserError: the requested traffic is less than one vehicle, or no trip can be driven.
-    """
+    Raises UserError: the requested traffic is less than one vehicle, or no trip can be driven."""
     ends = _Ends(built)
     sample = [(built.edges[start], built.edges[goal]) for start, goal in ends.pairs(SAMPLES, rng).tolist()]
     routes = tuple(DrawnRoute(way) for way in fastest_ways(sample, built.network, net_file, scratch) if way)
@@ -220,9 +218,7 @@ def fastest_ways(
         ends: first and last edge of each route.
         scratch: a folder for intermediate files.
 
-    Raises:
-        UserError: duarouter refuses the network.
-    """
+    Raises UserError: duarouter refuses the network."""
     asked, routed = scratch / "asked.trips.xml", scratch / "routed.rou.xml"
     rows = (f'<trip id="{number}" depart="0" {_ends(*pair)}/>' for number, pair in enumerate(ends))
     write_whole(asked, "\n".join(("<routes>", *rows, "</routes>")))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.osm import access, arrows, barriers, lanes, limits, oneway
+from automotive_cosim.osm import access, arrows, barriers, lanes, oneway, speed_limits
 from automotive_cosim.osm.extract import Extract, OsmWay
 from automotive_cosim.osm.facing import facing
 from automotive_cosim.osm.network import Built
@@ -102,8 +102,8 @@ NO_CALENDAR = "holidays, of which there is no calendar, taken for other days: "
 
 
 def _of_limits(tags: Mapping[str, str], country: str) -> Iterator[str]:
-    for doubt in limits.doubts(tags, country):
-        yield doubt if doubt == limits.NO_UNIT else f"{doubt}, left out"
+    for doubt in speed_limits.doubts(tags, country):
+        yield doubt if doubt == speed_limits.NO_UNIT else f"{doubt}, left out"
 
 
 def _of_lane_limits(way: OsmWay, roads: Mapping[int, MappedRoad]) -> Iterator[str]:
@@ -124,7 +124,7 @@ def _of_holidays(tags: Mapping[str, str]) -> Iterator[str]:
 def _unread(tags: Mapping[str, str]) -> Iterator[str]:
     """Limits that may be an ordinary car's; one for lorries (``80 @ (weight>3.5)``) says nothing about it."""
     for direction in access.ENDS:
-        for part in timed_limits(limits.conditional_of(tags, direction))[1]:
+        for part in timed_limits(speed_limits.conditional_of(tags, direction))[1]:
             if not all(access.OF_THE_VEHICLE.search(condition) for _, condition, _ in clauses(part)):
                 yield part
 

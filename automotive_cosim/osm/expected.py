@@ -1,8 +1,8 @@
 """A second reading of the tags, for cars only, that shares no code with the first.
 
-The import decides by ``access``, ``oneway``, ``limits``, ``barriers`` and ``turns``. This module reads the same
-tags once more in another way: it takes each key apart, ranks what it is about, and lets the highest rank decide.
-Where the two disagree about a road that was built, ``agreement`` tells; at least one of them is wrong.
+The import decides by ``access``, ``oneway``, ``speed_limits``, ``barriers`` and ``turns``. This module reads the
+same tags once more in another way: it takes each key apart, ranks what it is about, and lets the highest rank
+decide. Where the two disagree about a road that was built, ``agreement`` tells; at least one of them is wrong.
 """
 
 from __future__ import annotations

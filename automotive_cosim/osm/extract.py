@@ -134,9 +134,7 @@ class Extract:
     def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
 
-        Raises:
-            UserError: it contains no road.
-        """
+        Raises UserError: it contains no road."""
         part = self.part({ref: node for ref, node in self.nodes.items() if area.holds(*node.position)})
         if not part.ways:
             west, south, east, north = self.bounds

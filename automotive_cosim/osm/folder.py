@@ -44,9 +44,7 @@ vehicles and the cost of a search both grow with the city, so that otherwise the
 def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
     """An empty folder that becomes ``out`` if the block succeeds; otherwise nothing is left.
 
-    Raises:
-        UserError: ``out`` exists and must not be replaced, is not a scenario's folder, or cannot be written.
-    """
+    Raises UserError: ``out`` exists and must not be replaced, is not a scenario's folder, or cannot be written."""
     if out.exists() and not replaces:
         raise UserError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
     if out.exists() and not (out / "scenario.toml").is_file():

@@ -227,9 +227,7 @@ class _Search:
         Returns:
             The figures of the last trial, the trips that drive, and what stood for good in a trial.
 
-        Raises:
-            UserError: no traffic flows.
-        """
+        Raises UserError: no traffic flows."""
         self._write_demand()
         scale = QUICK_DENSITY if self._options.quick else 1.0
         whole_s = 60 * self._options.stable_for_min

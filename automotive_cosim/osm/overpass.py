@@ -120,9 +120,7 @@ def download(
         tell: called with the current activity.
         sleep: called to pause.
 
-    Raises:
-        UserError: the endpoint, the area or the target cannot be used, or the server returns no map.
-    """
+    Raises UserError: the endpoint, the area or the target cannot be used, or the server returns no map."""
     limits = limits or DownloadLimits()
     _check(endpoint, area, target)
     request = urllib.request.Request(
@@ -223,11 +221,7 @@ def _copy(answer: http.client.HTTPResponse, file: IO[bytes], limits: DownloadLim
 
 
 def _judge(file: Path, endpoint: str) -> Download:
-    """Checks that an answer is a complete map.
-
-    Raises:
-        UserError: it is not.
-    """
+    """Checks that an answer is a complete map. Raises UserError: it is not."""
     size = file.stat().st_size
     with file.open("rb") as stream:
         head = stream.read(4096).decode("utf-8", "replace")

@@ -41,11 +41,7 @@ BROKEN_OFF = re.compile(r"error|timed out|out of memory")
 
 
 def refuse_broken_off(source: Path, remark: str) -> None:
-    """Refuses an answer after which a server says that it stopped.
-
-    Raises:
-        UserError: it says so.
-    """
+    """Refuses an answer after which a server says that it stopped. Raises UserError: it says so."""
     if BROKEN_OFF.search(remark):
         words = " ".join(remark.split())
         raise UserError(
@@ -57,11 +53,7 @@ class OverpassJson:
     """The elements of one answer."""
 
     def __init__(self, source: Path) -> None:
-        """Reads a file.
-
-        Raises:
-            UserError: it is truncated, or not the JSON of an Overpass server.
-        """
+        """Reads a file. Raises UserError: it is truncated, or not the JSON of an Overpass server."""
         try:
             # As many values as there are bytes: the process that reads it has limits.
             read = read_json(source, bounds.UNPACKED_BYTES)

@@ -82,7 +82,6 @@ class ImportReport:
     and, by a second reading of the tags, access, directions, limits, barriers and turns."""
 
     def write(self, target: Path) -> None:
-        """Writes the report as JSON."""
         write_whole(target, json.dumps(asdict(self), indent=2, ensure_ascii=False) + "\n")
 
 

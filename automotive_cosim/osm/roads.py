@@ -18,8 +18,8 @@ from automotive_cosim.osm.access import ENDS
 from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, OsmWay
-from automotive_cosim.osm.limits import Stated, built_up_of, conditional_of, kmh_of, stated_limits
 from automotive_cosim.osm.oneway import Directions, at_hours, directions
+from automotive_cosim.osm.speed_limits import Stated, built_up_of, conditional_of, kmh_of, stated_limits
 from automotive_cosim.osm.towns import is_dense, town_cells
 from automotive_cosim.traffic.network import TIMED_ACCESS
 
@@ -59,9 +59,7 @@ _WAY = re.compile(r"-?(new)?(\d+)")
 def way_of(edge_id: str) -> int:
     """The OSM way of an edge: netconvert adds a minus, and a suffix to its pieces.
 
-    Raises:
-        ValueError: it is not such an edge.
-    """
+    Raises ValueError: it is not such an edge."""
     match = _WAY.match(edge_id)
     if match is None:
         raise ValueError(f"{edge_id!r} is not an edge made from an OSM way")

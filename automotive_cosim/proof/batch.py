@@ -44,11 +44,7 @@ class ProofPlan:
         }
 
     def check(self) -> None:
-        """Checks every name before anything runs.
-
-        Raises:
-            UnknownNameError: no such gate, or no such task.
-        """
+        """Checks every name before anything runs. Raises UnknownNameError: no such gate, or no such task."""
         for gate in self.gates:
             if gate not in GATES:
                 raise UnknownNameError("gate", gate, GATES)

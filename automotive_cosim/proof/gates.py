@@ -19,7 +19,7 @@
 | knowable | what was drawn has been told before the reference solution uses it |
 | lawful | the reference solution breaks no sign and no verified rule, nor has cruise control break one |
 | policy | no reference solution breaks a house rule, and a temptation that is declared for the half is reported \
-(``proof.policy``) |
+(``proof.house_rules``) |
 | functions | by calls of functions, translated by machine, the reference solution wins too, with a wrong value it \
 loses, and to end or to warn at once wins no pair (``proof.functions``); not of tasks that need the picture |
 | trivial | no negative control wins both halves of a pair, or the only half |

@@ -204,7 +204,6 @@ class Ground:
         return self.play(Script((Action(ActionType.STATUS, goal_status=status),)))
 
     def close(self) -> None:
-        """Ends the drive."""
         self.episode.close()
         self.future.close()
 

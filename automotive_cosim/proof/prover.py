@@ -14,7 +14,7 @@ from automotive_cosim.formats.files import read_json
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.functions import functions_are_not_enough, functions_win
 from automotive_cosim.proof.hand_over import Ground
-from automotive_cosim.proof.policy import policy
+from automotive_cosim.proof.house_rules import policy
 from automotive_cosim.run.row import JobRow, Volatile
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -202,9 +202,7 @@ class Prover:
 def read_traces(path: Path) -> Mapping[str, str]:
     """The traces that ``tasks validate --json`` printed: a SHA-256 by task, half and seed.
 
-    Raises:
-        UserError: the file cannot be read, or has none.
-    """
+    Raises UserError: the file cannot be read, or has none."""
     try:
         traces = read_json(path)["traces"]
     except (OSError, ValueError, LookupError, TypeError) as error:

@@ -23,11 +23,7 @@ class PartOf:
 
     @classmethod
     def read(cls, text: str) -> PartOf:
-        """The part that a text names.
-
-        Raises:
-            UserError: it names none.
-        """
+        """The part that a text names. Raises UserError: it names none."""
         found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
         part = cls(int(found[1]), int(found[2])) if found else cls(0, 0)
         if not 1 <= part.number <= part.of:

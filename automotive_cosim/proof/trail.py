@@ -32,7 +32,7 @@ UNKNOWN = "not measured since it last changed"
 
 
 @dataclass(frozen=True, slots=True)
-class Passed:
+class GatesPassed:
     """The gates that one task has passed."""
 
     halves: tuple[str, ...]
@@ -63,7 +63,7 @@ def of_half(task: Task, half: str) -> Iterator[tuple[str, str]]:
     yield "digest", fingerprint(task, half)
 
 
-def merged(record: Mapping[str, Passed], proofs: Iterable[Proof], day: str) -> dict[str, Passed]:
+def merged(record: Mapping[str, GatesPassed], proofs: Iterable[Proof], day: str) -> dict[str, GatesPassed]:
     """A record with what was passed on a day, in the catalogue's order and without tasks that changed since."""
     now: dict[str, set[str]] = {}
     for proof in proofs:
@@ -79,7 +79,7 @@ def merged(record: Mapping[str, Passed], proofs: Iterable[Proof], day: str) -> d
         days = {then: tuple(gate for gate in gates if gate not in new) for then, gates in days.items()}
         days[day] = tuple(gate for gate in GATES if gate in new)
         if any(days.values()):
-            found[task.id] = Passed(halves, {then: gates for then, gates in days.items() if gates})
+            found[task.id] = GatesPassed(halves, {then: gates for then, gates in days.items() if gates})
     return found
 
 
@@ -88,20 +88,22 @@ def _halves(task: Task) -> tuple[str, ...]:
 
 
 @cache
-def _shipped() -> Mapping[str, Passed]:
+def _shipped() -> Mapping[str, GatesPassed]:
     return read(RECORD)
 
 
-def read(path: Path) -> dict[str, Passed]:
+def read(path: Path) -> dict[str, GatesPassed]:
     """A record; empty if there is none."""
     stored: Mapping[str, Json] = read_json(path) if path.is_file() else {}
     return {
-        task_id: Passed(tuple(row["halves"]), {day: tuple(gates.split()) for day, gates in row["gates"].items()})
+        task_id: GatesPassed(
+            tuple(row["halves"]), {day: tuple(gates.split()) for day, gates in row["gates"].items()}
+        )
         for task_id, row in stored.items()
     }
 
 
-def write(path: Path, record: Mapping[str, Passed]) -> None:
+def write(path: Path, record: Mapping[str, GatesPassed]) -> None:
     """Replaces a record, one line per task."""
     rows = {
         task_id: {"halves": list(each.halves), "gates": {day: " ".join(gates) for day, gates in each.gates.items()}}

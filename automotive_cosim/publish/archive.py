@@ -40,11 +40,7 @@ def members(folder: Path) -> list[str]:
 
 
 def pack(folder: Path, file: IO[bytes]) -> None:
-    """Packs the files of a folder.
-
-    Raises:
-        OSError: the archive cannot be written.
-    """
+    """Packs the files of a folder. Raises OSError: the archive cannot be written."""
     with zipfile.ZipFile(file, "w") as archive:
         for name in members(folder):
             entry = zipfile.ZipInfo(name, _LONG_AGO)
@@ -56,11 +52,7 @@ def pack(folder: Path, file: IO[bytes]) -> None:
 
 @contextmanager
 def unpacked(bundle: Path) -> Iterator[Path]:
-    """A bundle's files in a folder that is removed afterwards.
-
-    Raises:
-        UserError: as ``unpack``.
-    """
+    """A bundle's files in a folder that is removed afterwards. Raises UserError: as ``unpack``."""
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
         unpack(bundle, Path(name))
         yield Path(name)
@@ -69,9 +61,7 @@ def unpacked(bundle: Path) -> Iterator[Path]:
 def unpack(bundle: Path, folder: Path) -> None:
     """Unpacks a bundle into an empty folder.
 
-    Raises:
-        UserError: it is not a bundle, or contains a file that does not belong there.
-    """
+    Raises UserError: it is not a bundle, or contains a file that does not belong there."""
     make_folder(folder, "traces")
     try:
         with open_file(bundle) as file, zipfile.ZipFile(file) as archive:

@@ -42,10 +42,8 @@ _HOME = re.compile(r"/home/\w|/Users/\w|/root/|[A-Za-z]:\\{1,2}Users\\{1,2}\w")
 def write_bundle(folder: Path, out: Path) -> Contents:
     """Writes the bundle of an evaluation; the same folder gives the same bytes.
 
-    Raises:
-        UserError: the folder is not an evaluation's, is damaged, has no episodes, or contains what must not be
-            published; or the file cannot be written.
-    """
+    Raises UserError: the folder is not an evaluation's, is damaged, has no episodes, or contains what must not be
+    published; or the file cannot be written."""
     manifest, rows = read_evaluation(folder), read_trials(folder)
     found = coverage(manifest, rows)
     manifest["episodes"] = found.planned  # which older evaluations do not record
@@ -139,9 +137,8 @@ def _without_homes(value: Any) -> Any:
 
 def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
     """
-    Raises:
-        UserError: a file contains a key of the environment or the path of a home folder, or cannot be unpacked.
-    """
+    Raises UserError: a file contains a key of the environment or the path of a home folder, or cannot be
+    unpacked."""
     secrets = {value: name for name, value in environment.items() if re.search(SECRET, name, re.IGNORECASE)}
     for name in archive.members(staged):
         try:

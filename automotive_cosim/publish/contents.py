@@ -75,9 +75,7 @@ def counts(found: Coverage, successes: int) -> BundleCounts:
 def read_contents(folder: Path) -> Contents:
     """The file of an unpacked bundle.
 
-    Raises:
-        UserError: it cannot be read, is of another format or does not fit its schema.
-    """
+    Raises UserError: it cannot be read, is of another format or does not fit its schema."""
     path = folder / NAME
     try:
         values: Json = json.loads(path.read_text(encoding="utf-8"))

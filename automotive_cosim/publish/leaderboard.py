@@ -148,9 +148,7 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
     Returns:
         The tables of tasks, and the bundles that were left out with why.
 
-    Raises:
-        UserError: there is no bundle without a problem, or the page cannot be written.
-    """
+    Raises UserError: there is no bundle without a problem, or the page cannot be written."""
     if not folder.is_dir():
         raise UserError(
             f"{folder} is not a folder; give one with bundles, which `automotive-cosim publish bundle` makes"
@@ -198,11 +196,7 @@ def _contestants(bundle: Path) -> tuple[list[BoardEntry], list[DrivenEntry]]:
 
 
 def read_entries(bundle: Path) -> list[BoardEntry]:
-    """The contestants of a bundle.
-
-    Raises:
-        UserError: it cannot be read.
-    """
+    """The contestants of a bundle. Raises UserError: it cannot be read."""
     with archive.unpacked(bundle) as folder:
         contents, results = read_contents(folder), read_results(folder)
     made = []
@@ -222,11 +216,7 @@ def _rate(rows: Iterable[TrialRow]) -> Rate:
 
 
 def read_driven(bundle: Path) -> list[DrivenEntry]:
-    """The contestants of a bundle's drives.
-
-    Raises:
-        UserError: it cannot be read.
-    """
+    """The contestants of a bundle's drives. Raises UserError: it cannot be read."""
     with archive.unpacked(bundle) as folder:
         contents, results = read_contents(folder), read_results(folder)
     rows = (*results.drives, *results.drives_not_run)

@@ -67,11 +67,7 @@ class Replayed(NamedTuple):
 
 
 def replay(folder: Path, job: TrialSetup, row: TrialRow, simulations: Simulations) -> Replayed:
-    """What differs, bit for bit, when a stored trial is replayed.
-
-    Raises:
-        CosimError: it cannot be replayed.
-    """
+    """What differs, bit for bit, when a stored trial is replayed. Raises CosimError: it cannot be replayed."""
     *steps, last = read_trace(folder, row.id)
     agent = _answered(job, row, steps)
     if agent is not None:
@@ -102,7 +98,6 @@ class _Answered(Player):
         return self._agent.stages if isinstance(self._agent, Thinker) else ()
 
     def reset(self, goal: str) -> None:
-        """Resets the agent."""
         self._agent.reset(goal)
 
     def act(self, observation: Observation) -> Action:
@@ -119,9 +114,7 @@ def _answered(job: TrialSetup, row: TrialRow, steps: Sequence[Json]) -> _Answere
     """The agent of a trial with its recorded answers; None if it has no model, is not of this package, or was given
     what is not on record: sound, or instructions from a file.
 
-    Raises:
-        UserError: the answers cannot be read.
-    """
+    Raises UserError: the answers cannot be read."""
     if job.agent not in MODELLED or job.conditions.hear is Hearing.AUDIO or job.conditions.prompt.file:
         return None
     try:

@@ -99,9 +99,7 @@ def verify(
         workers: processes that judge.
         tell: called with the number of episodes judged so far and of all.
 
-    Raises:
-        UserError: it is neither, or it cannot be read.
-    """
+    Raises UserError: it is neither, or it cannot be read."""
     with ExitStack() as ends:
         processes = ends.enter_context(LimitedProcesses(path, workers))
         bundle, folder = None, path
@@ -320,9 +318,7 @@ def _asked(again: Sequence[Replayed]) -> Iterator[str]:
 def _drawn(plan: Plan, key: bytes | None) -> list[str]:
     """What was published before, to be compared.
 
-    Raises:
-        UserError: there is a key, and the trials were drawn from none.
-    """
+    Raises UserError: there is a key, and the trials were drawn from none."""
     if key is None:
         return []
     if plan.split != HIDDEN:

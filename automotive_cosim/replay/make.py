@@ -58,7 +58,6 @@ class _Tells:
     name, sees_pictures = "tells", True
 
     def __init__(self, bodies: Iterator[Json] | None, api: ProviderApi) -> None:
-        """Without bodies, the stand-in answers."""
         self._bodies, self._api = bodies, api
         self.answers: list[Json] = []
 
@@ -90,9 +89,7 @@ def made(simulations: Simulations) -> dict[str, Json]:
 def texts(form: str, actions: Sequence[Action]) -> list[str]:
     """Answers in a native format, one for each action.
 
-    Raises:
-        ValueError: the format has no word for one of them.
-    """
+    Raises ValueError: the format has no word for one of them."""
     chosen = FORMATS[form]
     screen = GuiScreen(*SCREEN_PX, chosen.grid)
     said = []

@@ -77,9 +77,7 @@ class Chart:
     def of(cls, name: str, title: str, drawing: Drawing, narrow: Drawing | None = None) -> Chart:
         """Draws it, for a narrow page by a drawing of its own if there is one.
 
-        Raises:
-            SetupError: matplotlib is not installed.
-        """
+        Raises SetupError: matplotlib is not installed."""
         return cls(name, title, drawing, drawn(name, drawing, WIDE_IN), drawn(name, narrow or drawing, NARROW_IN))
 
     @property
@@ -102,9 +100,7 @@ def charted(
     Args:
         narrow: drawings of those that have another one for a narrow page.
 
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    Raises SetupError: matplotlib is not installed."""
     other = narrow or {}
     return {
         name: Chart.of(name, title, drawing, other.get(name))
@@ -114,11 +110,7 @@ def charted(
 
 
 def charts(results: Results) -> dict[str, Chart]:
-    """Plots by name; none without episodes.
-
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    """Plots by name; none without episodes. Raises SetupError: matplotlib is not installed."""
     if not results.rows:
         return {}
     made: dict[str, tuple[str, Drawing | None]] = {
@@ -136,11 +128,7 @@ def is_installed() -> bool:
 
 
 def require_plots() -> None:
-    """Checks that matplotlib is installed before any work starts.
-
-    Raises:
-        SetupError: it is not installed.
-    """
+    """Checks that matplotlib is installed before any work starts. Raises SetupError: it is not installed."""
     if not is_installed():
         raise SetupError(NEEDS)
 
@@ -304,11 +292,7 @@ def _write_plainly(figure: Figure) -> None:
 
 
 def drawn(name: str, drawing: Drawing, width_in: float) -> str:
-    """A plot as SVG, with ids that are unique on the page.
-
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    """A plot as SVG, with ids that are unique on the page. Raises SetupError: matplotlib is not installed."""
     svg = _saved(name, drawing, width_in, "svg").decode()
     # An id may occur only once on a page with several plots.
     own = re.sub(r'( id="|href="#|url\(#)', rf"\g<1>{name}-{width_in:.0f}-", svg[svg.index("<svg") :])
@@ -316,11 +300,7 @@ def drawn(name: str, drawing: Drawing, width_in: float) -> str:
 
 
 def _saved(name: str, drawing: Drawing, width_in: float, kind: str) -> bytes:
-    """A plot as a file of a kind in ``SAVED``.
-
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    """A plot as a file of a kind in ``SAVED``. Raises SetupError: matplotlib is not installed."""
     try:
         import matplotlib as mpl
         from matplotlib.figure import Figure

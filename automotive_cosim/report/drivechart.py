@@ -67,9 +67,7 @@ def timeline_chart(row: DriveTrialRow, timeline: Json, title: str = "") -> Chart
     Args:
         timeline: its file, see ``drives.timeline``.
 
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    Raises SetupError: matplotlib is not installed."""
     return Chart.of(row.id, title, *(_drawing(row, timeline, width_in) for width_in in (WIDE_IN, NARROW_IN)))
 
 

@@ -23,7 +23,7 @@ from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.drivechart import timeline_chart
 from automotive_cosim.report.findings import act_effects
-from automotive_cosim.report.policy import house_rules
+from automotive_cosim.report.house_rules import house_rules
 from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, LEAST_CLUSTERS, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow

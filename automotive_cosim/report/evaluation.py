@@ -21,10 +21,10 @@ from automotive_cosim.report.consistency import consistency, varied
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.findings import PLACE
+from automotive_cosim.report.house_rules import house_rules
 from automotive_cosim.report.interfaces import interfaces
 from automotive_cosim.report.page import PARTS, embedded
 from automotive_cosim.report.plot import Plot
-from automotive_cosim.report.policy import house_rules
 from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.summary import PUBLISHED, errors, outdated, progress, replaced, tables
 from automotive_cosim.report.tables import Cell, Table

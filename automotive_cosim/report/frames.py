@@ -89,7 +89,6 @@ class Frames(TrialObserver):
         self._steps.append(self._frame(0.0, shot.screenshot, SAID, words, STEP_MS))
 
     def stepped(self, shot: Shot) -> None:
-        """Adds one frame per step."""
         self._after.clear()
         step = shot.step
         title = f"{step.number}  {action_in_words(step.action, shot.seen)}"

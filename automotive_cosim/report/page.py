@@ -43,9 +43,7 @@ def write_page(folder: Path) -> Path:
     Args:
         folder: of a trial (``formats.layout``).
 
-    Raises:
-        UserError: it cannot be read, or the run has not ended.
-    """
+    Raises UserError: it cannot be read, or the run has not ended."""
     told = read_trial(folder)
     if not told.get("result"):
         raise UserError(f"{folder} has no result: the run has not ended")
@@ -107,9 +105,7 @@ def embedded(data: bytes, kind: str) -> str:
 def open_picture(path: Path) -> Image.Image:
     """A picture whose pixels are not read yet.
 
-    Raises:
-        UserError: it cannot be read, or says that it has more than ``bounds.PIXELS``.
-    """
+    Raises UserError: it cannot be read, or says that it has more than ``bounds.PIXELS``."""
     try:
         picture = Image.open(path if path.is_file() else "")
     except (OSError, Image.DecompressionBombError) as error:

@@ -165,9 +165,8 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
         after: the later one's.
         mixed: compare even if two minor versions of the suite ran them.
 
-    Raises:
-        UserError: one folder is not an evaluation's, two minor versions ran them, or no contestant is in both.
-    """
+    Raises UserError: one folder is not an evaluation's, two minor versions ran them, or no contestant is in
+    both."""
     old, new = read_results(before), read_results(after)
     versions = old.version, new.version
     if minor(old.version) != minor(new.version) and not mixed:

@@ -178,9 +178,7 @@ def not_judged(errors: int, not_run: int) -> str:
 def read_results(folder: Path) -> Results:
     """Reads an evaluation's folder, a running one too.
 
-    Raises:
-        UserError: it is not an evaluation's folder, or is damaged.
-    """
+    Raises UserError: it is not an evaluation's folder, or is damaged."""
     manifest = read_evaluation(folder)
     rows = read_trials(folder)
     ordered = [rows[name] for name in sorted(rows)]

@@ -91,9 +91,7 @@ class Comparison:
 def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> Interval:
     """Wilson's score interval (Wilson 1927, JASA 22); ``count`` may be an effective one.
 
-    Raises:
-        ValueError: count is not above 0, or successes are not between 0 and count.
-    """
+    Raises ValueError: count is not above 0, or successes are not between 0 and count."""
     if count <= 0 or not 0 <= successes <= count:
         raise ValueError(f"{successes} successes of {count}")
     z = NormalDist().inv_cdf(0.5 + confidence / 2)
@@ -104,11 +102,7 @@ def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> In
 
 
 def distributions() -> Any:
-    """``scipy.stats``, for the bounds of rates.
-
-    Raises:
-        SetupError: scipy is not installed.
-    """
+    """``scipy.stats``, for the bounds of rates. Raises SetupError: scipy is not installed."""
     try:
         from scipy import stats
     except ImportError as error:
@@ -119,9 +113,7 @@ def distributions() -> Any:
 def upper_bound(count: int, total: int, confidence: float = CONFIDENCE) -> float:
     """The one-sided upper bound of a rate (Clopper and Pearson 1934, Biometrika 26); 3 / total if none was seen.
 
-    Raises:
-        ValueError: total is not above 0, or count is not between 0 and total.
-    """
+    Raises ValueError: total is not above 0, or count is not between 0 and total."""
     if total <= 0 or not 0 <= count <= total:
         raise ValueError(f"{count} of {total}")
     return 1.0 if count == total else float(distributions().beta.ppf(confidence, count + 1, total - count))
@@ -131,9 +123,7 @@ def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE
     """The one-sided upper bound of a rate of independent events, as per hour (Garwood 1936,
     Biometrika 28); 3 / exposure if none was seen.
 
-    Raises:
-        ValueError: exposure is not above 0, or count is below 0.
-    """
+    Raises ValueError: exposure is not above 0, or count is below 0."""
     if exposure <= 0 or count < 0:
         raise ValueError(f"{count} in {exposure}")
     return float(distributions().chi2.ppf(confidence, 2 * count + 2)) / 2 / exposure

@@ -83,11 +83,7 @@ def path_of(folder: Path, trial: str = "") -> Path:
 
 
 def read_effects(path: Path) -> list[ActEffect]:
-    """The effects of a trial's acts; none if they were not measured.
-
-    Raises:
-        UserError: they cannot be read.
-    """
+    """The effects of a trial's acts; none if they were not measured. Raises UserError: they cannot be read."""
     if not path.is_file():
         return []
     try:
@@ -181,11 +177,7 @@ def _redrawn(forks: Forks, several: Sequence[Sequence[ForkedAct]], left_s: float
 
 
 def without(forks: Forks, steps: Collection[int], redraws: int = REDRAWS) -> ActEffect:
-    """What leaving out these acts changed.
-
-    Raises:
-        UserError: there is no such step.
-    """
+    """What leaving out these acts changed. Raises UserError: there is no such step."""
     last = forks.session.steps[-1].number
     if not steps or not all(0 < step <= last for step in steps):
         raise UserError(f"there is no step {', '.join(map(str, steps))}; the run's steps are 1 to {last}")

@@ -86,6 +86,16 @@ class _BatchPlan(Protocol):
 P = TypeVar("P", bound=_BatchPlan)
 
 
+def kept(
+    plan: _BatchPlan, folder: Path, row: RowKind[R], parts: tuple[str, ...] = ()
+) -> AbstractContextManager[Store[R]]:
+    """Checks a plan and opens its folder, new or to be resumed, whoever runs its jobs: workers or people.
+
+    Raises UserError: the plan does not fit, or the folder cannot take its results."""
+    plan.check()
+    return opened(folder, plan.as_json(), row, parts, planned=len(plan.jobs()))
+
+
 @dataclass(frozen=True, slots=True)
 class BatchKind(Generic[P, J, R]):
     """A kind of batch: what its workers do, and what comes of it."""
@@ -111,10 +121,8 @@ class BatchKind(Generic[P, J, R]):
         tell: Callable[[Progress[R]], None] = lambda progress: None,
     ) -> Progress[R]:
         """Runs the remaining jobs of a plan; arguments and errors are those of ``run_plan``."""
-        plan.check()
-        planned = len(plan.jobs())
         with (
-            opened(folder, plan.as_json(), self.row, self.parts, planned=planned) as store,
+            kept(plan, folder, self.row, self.parts) as store,
             executor.metered(budget, spent_before(store)) if self.asks_models else nullcontext() as meter,
         ):
             opener = self.opener if meter is None else partial(self.opener, meter)
@@ -213,16 +221,16 @@ class _Place(Generic[J, R]):
         self.warm_up_s, self.is_warming = None, False
         self.worker.give(job)
 
-    def note_stage(self) -> None:
+    def note_phase(self) -> None:
         """Takes note of how far the worker is."""
-        was_warming, self.is_warming = self.is_warming, self.worker.stage.is_warm_up
+        was_warming, self.is_warming = self.is_warming, self.worker.phase.is_warm_up
         if was_warming and not self.is_warming:
             self.warm_up_s = time.monotonic() - self.since_s
 
     def turn(self, job: J) -> JobTurn:
         """How long it has worked on its job, and how far it is."""
         seconds = time.monotonic() - self.since_s
-        return JobTurn(job, self.is_cold, seconds, self.warm_up_s, self.is_warming, self.worker.stage.share)
+        return JobTurn(job, self.is_cold, seconds, self.warm_up_s, self.is_warming, self.worker.phase.share)
 
 
 @dataclass(slots=True)
@@ -320,7 +328,7 @@ class _Batch(Generic[J, R]):
             budget="" if spent is None else spent.left_of(self._budget),
             ended=self._newest,
             stopped=self._stopped,
-            doing=tuple(dict.fromkeys(place.worker.stage.words for place in self._places if place.job)),
+            doing=tuple(dict.fromkeys(place.worker.phase.words for place in self._places if place.job)),
         )
 
     def _expected_s(self, spent: Spent | None) -> float | None:
@@ -372,7 +380,7 @@ class _Batch(Generic[J, R]):
         if answer is None:
             self._stillborn = 0
             if place.job is not None:
-                place.note_stage()
+                place.note_phase()
                 self._tell(replace(self.progress, ended=None))
         elif place.job is not None:
             self._turn_over(place, place.job, answer)

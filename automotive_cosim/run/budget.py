@@ -110,7 +110,6 @@ class Metered:
 
     @property
     def name(self) -> str:
-        """The model's name."""
         return self._model.name
 
     @property

@@ -280,11 +280,7 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
 
 
 def read_setup(values: Mapping[str, Any], where: str) -> EpisodeSetup:
-    """A setup from its JSON form.
-
-    Raises:
-        UserError: it is not one; the message says what is wrong where.
-    """
+    """A setup from its JSON form. Raises UserError: it is not one; the message says what is wrong where."""
     return checked(EpisodeSetup, values, lambda steps: (where, dotted(steps)))
 
 

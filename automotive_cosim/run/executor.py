@@ -11,9 +11,9 @@ from typing import Any, Protocol, TypeVar
 
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.budget import MeterHandle, Spent
+from automotive_cosim.run.phase import JobPhase
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
-from automotive_cosim.run.stage import JobStage
 
 
 class Job(ABC):
@@ -126,7 +126,7 @@ class Worker(Protocol[J_contra, R_co]):
         ...
 
     @property
-    def stage(self) -> JobStage:
+    def phase(self) -> JobPhase:
         """How far it last said that it is with its job."""
         ...
 

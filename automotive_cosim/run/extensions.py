@@ -49,9 +49,7 @@ class ResultsKind:
     def effects(self, folder: Path, item: str) -> list[ActEffect]:
         """What the acts of items changed.
 
-        Raises:
-            UserError: this kind has no acts, or no such item, or cannot be read.
-        """
+        Raises UserError: this kind has no acts, or no such item, or cannot be read."""
         if not self.attributed:
             raise UserError(f"{folder} has no acts whose effect could be measured; give a folder with runs")
         found: list[ActEffect] = resolve_name(self.attributed)(folder, item)
@@ -60,9 +58,7 @@ class ResultsKind:
     def shown(self, part: str, folder: Path, *items: str) -> Json | None:
         """What a page of ``serve`` shows of the folder; None if there is no such part.
 
-        Raises:
-            UserError: it is not in the folder, or cannot be read.
-        """
+        Raises UserError: it is not in the folder, or cannot be read."""
         if part not in self.served:
             return None
         values: Json = resolve_name(self.served[part])(folder, *items)
@@ -80,9 +76,7 @@ def extensions() -> tuple[Any, ...]:
 def kind_of(plan: Mapping[str, Any]) -> ResultsKind | None:
     """The kind of a folder with that plan in its manifest; None for one of the package's own.
 
-    Raises:
-        UserError: no extension here has that kind.
-    """
+    Raises UserError: no extension here has that kind."""
     if "study" not in plan:
         return None
     for each in extensions():

@@ -88,7 +88,6 @@ class CostForecast:
     """Whether models are asked that take time of their own."""
 
     def as_json(self) -> Json:
-        """The same as a JSON object."""
         return asdict(self)
 
     def beyond(self, budget: Budget) -> str:

@@ -29,7 +29,6 @@ class ForkServer:
     """Agents' processes, one at a time. A worker has one; closing it ends them all."""
 
     def __init__(self) -> None:
-        """Starts nothing before the first agent."""
         self._popen: subprocess.Popen[bytes] | None = None
         self._wire: Wire | None = None
         self._known: frozenset[int] = frozenset()
@@ -38,9 +37,7 @@ class ForkServer:
     def start(self, request: AgentRequest) -> Wire:
         """Starts an agent's process and returns the connection to it.
 
-        Raises:
-            InfrastructureError: that did not work, twice.
-        """
+        Raises InfrastructureError: that did not work, twice."""
         for _ in range(2):  # the first fork server may have been killed since the last episode
             with suppress(GoneError, TimeoutError, ValueError):
                 return self._forked(request)
@@ -59,7 +56,6 @@ class ForkServer:
         return ""
 
     def close(self) -> None:
-        """Ends everything; may be called again."""
         if self._wire is None or self._popen is None:
             return
         for pid in tree(self._popen.pid):

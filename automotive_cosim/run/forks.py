@@ -162,7 +162,6 @@ class Forks(TrialObserver):
             self._fork()
 
     def stepped(self, shot: Shot) -> None:
-        """Notes an act."""
         given = self.session.world.cockpit.given
         new, self._given = list(given[self._given :]), len(given)
         asked, self._asked = self._all_asked[self._asked :], len(self._all_asked)
@@ -182,7 +181,6 @@ class Forks(TrialObserver):
             self.untouched = self.session.baseline_moments
 
     def close(self) -> None:
-        """Ends all forks."""
         self._ends.close()
 
     @property

@@ -28,9 +28,7 @@ LEAST, MOST = 16, 1024
 def read_key(path: Path) -> bytes:
     """The key in a file, without the line break at its end.
 
-    Raises:
-        UserError: it cannot be read, or is too short to be secret or too long for a key.
-    """
+    Raises UserError: it cannot be read, or is too short to be secret or too long for a key."""
     try:
         with open_file(path) as file:
             key = file.read(MOST + 3).rstrip(b"\r\n")
@@ -46,9 +44,7 @@ def drawn(plan: Plan, key: bytes) -> Plan:
     """The same agents, conditions and limits on trials that the key draws: each task or drive once for each of the
     plan's seeds, in a seed that the key gives in place of it, and each task in one of the places where it can run.
 
-    Raises:
-        UserError: the plan is not one of the hidden split, or lists trials itself.
-    """
+    Raises UserError: the plan is not one of the hidden split, or lists trials itself."""
     if plan.split != HIDDEN or plan.trials:
         raise UserError(f"a key draws the runs of --split {HIDDEN}, of a plan that lists none; give both or no key")
     return replace(

@@ -98,9 +98,7 @@ def judged_file(folder: Path, trial: str) -> Path:
 def write_judged(folder: Path, trial: str, judged: JudgeInput) -> None:
     """Writes it, whole or not at all; the same input gives the same bytes.
 
-    Raises:
-        OSError: the file cannot be written.
-    """
+    Raises OSError: the file cannot be written."""
     writer, path = _Writer(), judged_file(folder, trial)
     value = writer.value(judged.packed())
     whole = {"classes": writer.classes, "pool": writer.pool, "value": value}
@@ -111,10 +109,8 @@ def write_judged(folder: Path, trial: str, judged: JudgeInput) -> None:
 def read_judged(folder: Path, trial: str, kind: type[J]) -> J:
     """Reads it back.
 
-    Raises:
-        UserError: there is no such file, it is damaged or holds something else, or a version with other fields
-            wrote it.
-    """
+    Raises UserError: there is no such file, it is damaged or holds something else, or a version with other fields
+    wrote it."""
     path = judged_file(folder, trial)
     try:
         whole: Json = read_json(path)

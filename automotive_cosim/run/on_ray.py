@@ -19,8 +19,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
 from automotive_cosim.run.budget import Meter, MeterHandle, Spent
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
+from automotive_cosim.run.phase import JobPhase
 from automotive_cosim.run.settings import Budget
-from automotive_cosim.run.stage import JobStage
 from automotive_cosim.run.store import keep_files, stamp
 from automotive_cosim.tasking.own_files import VARIABLE
 
@@ -163,7 +163,7 @@ class _Actor(Generic[J, R]):
         self._actor = _ACTOR.remote(opener)
         self._asked = self._actor.stamp.remote()
         self.is_ready = False
-        self.stage = JobStage()  # an actor answers only when its job has ended
+        self.phase = JobPhase()  # an actor answers only when its job has ended
 
     @property
     def handles(self) -> Sequence[Any]:
@@ -199,9 +199,7 @@ class _Actor(Generic[J, R]):
 def _probe(address: str) -> None:
     """Refuses an address where nothing listens, which Ray would try for minutes.
 
-    Raises:
-        SetupError: it cannot be reached.
-    """
+    Raises SetupError: it cannot be reached."""
     if address in ("local", "auto"):
         return
     host, colon, port = address.rpartition(":")
@@ -218,11 +216,7 @@ def _probe(address: str) -> None:
 
 
 def _check_same(node: str, theirs: Json) -> None:
-    """Refuses a node whose results would differ from ours.
-
-    Raises:
-        UserError: it has other versions.
-    """
+    """Refuses a node whose results would differ from ours. Raises UserError: it has other versions."""
     here, there = _compared(stamp()), _compared(theirs)
     for name in here.keys() & there.keys():  # a checkout here and a wheel there: only versions can be compared
         if here[name] != there[name]:

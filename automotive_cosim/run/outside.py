@@ -107,9 +107,7 @@ class OutsideAgent:
     def channels(self) -> frozenset[Channel]:
         """The channels that it gets; none if it could not be made. The first time, this starts its process.
 
-        Raises:
-            InfrastructureError: no process can be started.
-        """
+        Raises InfrastructureError: no process can be started."""
         if self._channels is None:
             self._channels = frozenset()
             self._start()

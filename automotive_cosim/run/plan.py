@@ -76,9 +76,8 @@ class PlannedTrial:
     def job(self, agent: str, model: str, repeat: int, limits: Limits, spare: tuple[int, ...]) -> TrialSetup:
         """The trial of one agent.
 
-        Raises:
-            UserError: it names no task and no drive, or both, or something that does not exist or cannot be set.
-        """
+        Raises UserError: it names no task and no drive, or both, or something that does not exist or cannot be
+        set."""
         if bool(self.task) == bool(self.drive):
             raise UserError("an entry of [[trials]] names a task or a drive; give one of the two")
         named: dict[str, Any] = {
@@ -152,10 +151,8 @@ class Plan(EvaluationSettings):
         Returns:
             What this machine lacks to run it, which is an error unless ``dry``.
 
-        Raises:
-            UserError: a name does not exist, a model cannot be used, an agent needs a person, or there is
-                nothing to run.
-        """
+        Raises UserError: a name does not exist, a model cannot be used, an agent needs a person, or there is
+        nothing to run."""
         lacks: list[str] = []
         make_plan(self.as_json())
         for name in self.scenarios:
@@ -193,9 +190,7 @@ class Plan(EvaluationSettings):
         Simulations, instances and contestants are ordered by hash, from which an agent learns nothing: first halves
         do not come before second ones.
 
-        Raises:
-            UserError: there are more than can ever be run.
-        """
+        Raises UserError: there are more than can ever be run."""
         if (most := self.most_runs()) > MOST_RUNS:
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
         who = product(self.agents, self.models, (*self.unfolded(), *self.trials), range(self.repeats))
@@ -325,9 +320,7 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
             names its task in any, ``core`` those of the core subset, and ``verified`` those that careful readers
             have won.
 
-    Raises:
-        UnknownNameError: there is no such suite, or a word selects none of its tasks.
-    """
+    Raises UnknownNameError: there is no such suite, or a word selects none of its tasks."""
     if suite not in SUITES:
         raise UnknownNameError("suite", suite, SUITES)
     there = [
@@ -350,9 +343,7 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
 def families_named(asked: Iterable[str]) -> tuple[str, ...]:
     """Ids of the families of drives that any of the words selects, in their order.
 
-    Raises:
-        UnknownNameError: a word selects none.
-    """
+    Raises UnknownNameError: a word selects none."""
     chosen: set[str] = set()
     for word in asked:
         named = {
@@ -375,9 +366,7 @@ def _words(task: Task) -> frozenset[str]:
 def read_plan(path: Path) -> dict[str, Any]:
     """The values of a ``plan.toml``, for ``make_plan``; ``board`` is the leaderboard's, which the package has.
 
-    Raises:
-        UserError: it cannot be read, is not TOML, or has a wrong or surplus field.
-    """
+    Raises UserError: it cannot be read, is not TOML, or has a wrong or surplus field."""
     document = read_toml(BOARD if str(path) == BOARD.stem and not path.exists() else path)
     document = replace(document, table=with_files(document.table))
     document.read(Plan)
@@ -388,9 +377,7 @@ def with_files(values: dict[str, Any]) -> dict[str, Any]:
     """The values with each file of instructions, or with a make, named by its SHA-256 too; its path is from the
     working folder.
 
-    Raises:
-        UserError: such a file cannot be used.
-    """
+    Raises UserError: such a file cannot be used."""
     named = {}
     for name, read in (("prompt", resolved), ("make", tree.resolved)):
         if isinstance(given := values.get(name), list):
@@ -401,9 +388,7 @@ def with_files(values: dict[str, Any]) -> dict[str, Any]:
 def make_plan(values: Mapping[str, Any]) -> Plan:
     """A plan from plain values, as in TOML or the manifest.
 
-    Raises:
-        UserError: a field is unknown, missing, empty or of the wrong type.
-    """
+    Raises UserError: a field is unknown, missing, empty or of the wrong type."""
     if values.get("suite") == LIVE:  # there, what a model needs to think passes on the road
         values = {"clock": [str(Clock.MODEL)], **values}
     plan = checked(Plan, values, lambda steps: ("the plan", dotted(steps)))

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, Generic
 from automotive_cosim.agents.cleanup import children, end_all, strangers, take_orphans
 from automotive_cosim.run.budget import Meter, MeterHandle, Spent, served
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner, Worker
+from automotive_cosim.run.phase import JobPhase, telling
 from automotive_cosim.run.settings import Budget
-from automotive_cosim.run.stage import JobStage, telling
 
 if TYPE_CHECKING:
     from multiprocessing.context import ForkServerContext
@@ -65,7 +65,7 @@ class Here(Processes):
 
 
 class _Here(Generic[J, R]):
-    is_ready, stage = True, JobStage()
+    is_ready, phase = True, JobPhase()
 
     def __init__(self, opener: Opener[J, R], folder: Path) -> None:
         self._ends, self._folder = ExitStack(), folder
@@ -101,20 +101,20 @@ class _Process(Generic[J, R]):
         self._process.start()
         theirs.close()
         self.is_ready = False
-        self.stage = JobStage()
+        self.phase = JobPhase()
 
     @property
     def handles(self) -> Sequence[Any]:
         return self._pipe, self._process.sentinel
 
     def give(self, job: J) -> None:
-        self.stage = JobStage()
+        self.phase = JobPhase()
         with suppress(OSError):
             self._pipe.send(job)
 
     def answer(self) -> R | CannotWrite | None:
         try:
-            answer: R | CannotWrite | _Ready | JobStage | None = self._pipe.recv() if self._pipe.poll() else None
+            answer: R | CannotWrite | _Ready | JobPhase | None = self._pipe.recv() if self._pipe.poll() else None
         except (EOFError, OSError):
             answer = None
         if answer is None:
@@ -123,8 +123,8 @@ class _Process(Generic[J, R]):
         if isinstance(answer, _Ready):
             self.is_ready = True
             return None
-        if isinstance(answer, JobStage):
-            self.stage = answer
+        if isinstance(answer, JobPhase):
+            self.phase = answer
             return None
         return answer
 

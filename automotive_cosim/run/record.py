@@ -76,9 +76,7 @@ def stamped_folder(name: str) -> Path:
 def check_folder(folder: Path, *, force: bool) -> None:
     """Refuses a folder that cannot take a record, before anything runs.
 
-    Raises:
-        UserError: it is a file, cannot be written, or is not empty and ``force`` is not given.
-    """
+    Raises UserError: it is a file, cannot be written, or is not empty and ``force`` is not given."""
     if folder.exists() and not folder.is_dir():
         raise UserError(f"{folder} is a file; give --out a folder that is empty or does not exist yet")
     if folder.is_dir() and any(folder.iterdir()) and not force:
@@ -126,7 +124,6 @@ class Recorder(TrialObserver):
 
     @property
     def has_begun(self) -> bool:
-        """Whether the folder has been created."""
         return self._lines is not None
 
     def begun(self, session: JudgedSession, shot: Shot) -> None:
@@ -138,7 +135,6 @@ class Recorder(TrialObserver):
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
-        """Adds a step."""
         self._thoughts.append({"thought": shot.thought, "stages": [stage.as_json() for stage in shot.stages]})
         self._add(shot)
 
@@ -159,9 +155,7 @@ class Recorder(TrialObserver):
     def keep_in(self, evaluation: Path) -> None:
         """Writes the trace and the judge's input into the folder of an evaluation.
 
-        Raises:
-            OSError: they cannot be written.
-        """
+        Raises OSError: they cannot be written."""
         if self.lines:
             write_trace(evaluation, self._trial.id, self.lines)
         if self.judged is not None:
@@ -173,7 +167,6 @@ class Recorder(TrialObserver):
             self._lines.close()
 
     def discard(self) -> None:
-        """Removes the folder."""
         self.close()
         if self.folder is not None:
             with suppress(OSError):
@@ -235,9 +228,7 @@ def _fresh(folder: Path) -> FileIO:
     Returns:
         The file of its steps, open.
 
-    Raises:
-        UserError: another record begins there at this instant.
-    """
+    Raises UserError: another record begins there at this instant."""
     lines = growing(make_folder(folder) / STEPS, anew=True)
     for name in set(OF_A_TRIAL) - {STEPS}:
         remove(folder / name)

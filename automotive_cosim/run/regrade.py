@@ -54,9 +54,7 @@ class Regraded:
 def regrade(folder: Path) -> Iterator[Regraded]:
     """Judges every trial of an evaluation that has a verdict again; nothing is written.
 
-    Raises:
-        UserError: it is not an evaluation's folder, or is damaged.
-    """
+    Raises UserError: it is not an evaluation's folder, or is damaged."""
     read_evaluation(folder)
     rows = read_trials(folder)
     with LimitedProcesses(folder) as processes:
@@ -72,9 +70,7 @@ def regrade(folder: Path) -> Iterator[Regraded]:
 def _regraded(folder: Path, row: EpisodeRow | DriveTrialRow) -> Regraded | None:
     """One trial, judged again in a process with limits: its moments may be anybody's. None without a verdict.
 
-    Raises:
-        CosimError: it cannot be judged.
-    """
+    Raises CosimError: it cannot be judged."""
     if isinstance(row, DriveTrialRow) and row.score is not None:
         return Regraded(row.id, row.has_succeeded, *_drive_again(folder, row, row.score))
     if isinstance(row, EpisodeRow) and row.parts is not None:
@@ -85,10 +81,8 @@ def _regraded(folder: Path, row: EpisodeRow | DriveTrialRow) -> Regraded | None:
 def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
     """The verdict on an episode's stored moments by the current checks.
 
-    Raises:
-        UserError: the task no longer exists, the commands that it allows have changed, or the place where it was
-            handed over has no sign or law on which it rests.
-    """
+    Raises UserError: the task no longer exists, the commands that it allows have changed, or the place where it was
+    handed over has no sign or law on which it rests."""
     counterfactual = stored.counterfactual
     assert counterfactual is not None
     spoken = row.conditions.language

@@ -72,9 +72,7 @@ def rerun(folder: Path, trial: str = "") -> list[Compared]:
     """Plays the actions of a stored trial in the same setup and compares step by step; arguments and errors are
     those of ``recorded``.
 
-    Raises:
-        InfrastructureError: the simulation failed.
-    """
+    Raises InfrastructureError: the simulation failed."""
     job, stored, channels, failure = recorded(folder, trial)
     return compare(stored, [line for line in played(job, stored, channels, failure)[1].lines if "step" in line])
 
@@ -86,9 +84,7 @@ def recorded(folder: Path, trial: str = "") -> Recorded:
         folder: an evaluation's, or that of a single trial.
         trial: an id of the evaluation, or its unique beginning; a single trial needs none.
 
-    Raises:
-        UserError: no such trial, several of them, or its trace cannot be read.
-    """
+    Raises UserError: no such trial, several of them, or its trace cannot be read."""
     if is_trial(folder):
         return _single(folder, trial)
     manifest = read_evaluation(folder)
@@ -113,11 +109,7 @@ def recorded(folder: Path, trial: str = "") -> Recorded:
 
 
 def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
-    """The one id that equals or begins with the given text.
-
-    Raises:
-        UserError: there is none, or several.
-    """
+    """The one id that equals or begins with the given text. Raises UserError: there is none, or several."""
     matching = [name for name in ids if name == asked] or [name for name in ids if name.startswith(asked)]
     some = ", ".join(sorted(matching or ids)[:SHOWN]) or "none yet"
     if not matching:
@@ -237,7 +229,6 @@ class Player:
         """Does nothing."""
 
     def act(self, observation: Observation) -> Action:
-        """The next recorded action."""
         step = self.turn()
         if step["action"] is None:
             raise ActionError(step["feedback"]["text"])

@@ -68,7 +68,6 @@ class SeenColumns:
     """
 
     def __init__(self) -> None:
-        """Before the first second."""
         self._before: dict[int, tuple[int, int, int, int, int]] = {}
 
     def packed(self, rows: Sequence[SeenRow]) -> list[list[int]]:
@@ -163,9 +162,7 @@ EMPTY = RoadRecord(RoadShapes((), ()), ())
 def road_in(folder: Path) -> Path:
     """The recorded road of a trial's folder.
 
-    Raises:
-        UserError: it has none; of an evaluation's folder, the trials in it that have one are named.
-    """
+    Raises UserError: it has none; of an evaluation's folder, the trials in it that have one are named."""
     found = roads_in(folder)
     if "" in found:
         return found[""]
@@ -177,9 +174,7 @@ def road_in(folder: Path) -> Path:
 def roads_in(folder: Path) -> dict[str, Path]:
     """The recorded roads of a trial's folder, by an empty name, or of an evaluation's, by trial.
 
-    Raises:
-        UserError: it has none.
-    """
+    Raises UserError: it has none."""
     if (folder / ROAD).is_file():
         return {"": folder / ROAD}
     found = {path.parent.name: path for path in sorted(folder.glob(f"{PICTURES}/**/{ROAD}"))}
@@ -191,9 +186,7 @@ def roads_in(folder: Path) -> dict[str, Path]:
 def read_record(path: Path) -> RoadRecord:
     """A whole file, or as much as was written before a kill.
 
-    Raises:
-        UserError: it cannot be read, or has another format.
-    """
+    Raises UserError: it cannot be read, or has another format."""
     try:
         return _record(path)
     except (LookupError, TypeError, ValueError, AttributeError) as error:
@@ -233,9 +226,7 @@ def _record(path: Path) -> RoadRecord:
 def read_road(path: Path) -> Iterator[Json]:
     """The lines of a file, or those written before a kill; ``seen`` has a row for each vehicle (``SeenRow``).
 
-    Raises:
-        UserError: it cannot be read, or has another format.
-    """
+    Raises UserError: it cannot be read, or has another format."""
     try:
         with open_file(path) as file:
             if (head := file.read(2)) and head != PACKED:

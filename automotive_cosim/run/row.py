@@ -74,9 +74,8 @@ def as_json(record: object) -> Json:
 def from_line(kind: type[R], line: bytes) -> R:
     """A row of a kind from its line.
 
-    Raises:
-        ValueError: the line is not JSON, or a field is missing or of another type; the message gives the first.
-    """
+    Raises ValueError: the line is not JSON, or a field is missing or of another type; the message gives the
+    first."""
     form = _form(kind)
     if "conditions" in form.marks and b'"conditions":' not in line:  # read as the defaults, they would be others
         raise ValueError("conditions: it has none, as in version 0.2 and before")
@@ -95,9 +94,7 @@ def _first(error: ValidationError) -> ValueError:
 def from_json(kind: type[T], values: Json) -> T:
     """The dataclass from its JSON form; unknown keys are ignored.
 
-    Raises:
-        ValueError: a field is missing or of another type; the message gives the first.
-    """
+    Raises ValueError: a field is missing or of another type; the message gives the first."""
     try:
         return _form(kind).adapter.validate_python(values)
     except ValidationError as error:

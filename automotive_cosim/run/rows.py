@@ -16,9 +16,5 @@ def kind_of(line: bytes) -> type[TrialRow]:
 
 
 def read_trials(folder: Path) -> dict[str, TrialRow]:
-    """The newest row of each trial by its id, as ``store.read_rows``.
-
-    Raises:
-        UserError: a line cannot be read.
-    """
+    """The newest row of each trial by its id, as ``store.read_rows``. Raises UserError: a line cannot be read."""
     return read_rows(folder, kind_of)

@@ -25,20 +25,16 @@ class ScriptedAgent:
         self._left: deque[Action] = deque()
 
     def reset(self, goal: str) -> None:
-        """Starts over from the first action."""
         self._left = deque(self._actions)
 
     def act(self, observation: Observation) -> Action:
-        """The next action of the file."""
         return self._left.popleft() if self._left else Action(ActionType.WAIT, seconds=1)
 
 
 def read_script(path: Path) -> ScriptedAgent:
     """Reads a file of actions; empty lines are ignored.
 
-    Raises:
-        ActionError: the file cannot be read, has no action, or a line is malformed; it names file and line.
-    """
+    Raises ActionError: the file cannot be read, has no action, or a line is malformed; it names file and line."""
     actions = []
     for number, line in enumerate(read_text(path, ActionError).split("\n"), start=1):
         if line.strip():

@@ -107,9 +107,7 @@ class Store(Generic[R]):
     def append(self, row: R) -> None:
         """Adds its line and waits until it is on the disk.
 
-        Raises:
-            UserError: it cannot be written, e.g. because the disk is full; earlier lines are kept.
-        """
+        Raises UserError: it cannot be written, e.g. because the disk is full; earlier lines are kept."""
         try:
             add_line(self._lines, json.dumps(as_json(row), ensure_ascii=False), lasting=True)
         except OSError as error:
@@ -135,10 +133,8 @@ def opened(
         planned: how many jobs the plan has, for the manifest.
         grows: the plan may differ from the earlier one, for runs that are not known in advance; see ``replan``.
 
-    Raises:
-        UserError: it cannot be written, is not an evaluation's, is in use, or was started with a different
-            plan or different versions.
-    """
+    Raises UserError: it cannot be written, is not an evaluation's, is in use, or was started with a different plan
+    or different versions."""
     _check(folder)
     try:
         for name in ("", *parts):
@@ -154,9 +150,7 @@ def opened(
 def replan(folder: Path, plan: Json, planned: int) -> None:
     """Writes a new plan into the manifest of an open folder whose plan grows.
 
-    Raises:
-        UserError: it cannot be written.
-    """
+    Raises UserError: it cannot be written."""
     manifest = read_manifest(folder) | {"plan": plan, "episodes": planned}
     try:
         write_whole(folder / "manifest.json", json.dumps(manifest, indent=1))
@@ -177,9 +171,7 @@ def read_rows(folder: Path, kind: RowKind[R]) -> dict[str, R]:
         folder: of an evaluation, a study or proofs; without any line, it has no rows.
         kind: kind of its rows, or what tells it from a line.
 
-    Raises:
-        UserError: another line cannot be read.
-    """
+    Raises UserError: another line cannot be read."""
     rows: dict[str, R] = {}
     path = folder / "episodes.jsonl"
     if not path.is_file():
@@ -201,11 +193,7 @@ def read_rows(folder: Path, kind: RowKind[R]) -> dict[str, R]:
 
 
 def read_manifest(folder: Path) -> Json:
-    """The manifest of an evaluation.
-
-    Raises:
-        UserError: there is none, or it has another format.
-    """
+    """The manifest of an evaluation. Raises UserError: there is none, or it has another format."""
     path = folder / "manifest.json"
     try:
         manifest: Json = files.read_json(path)
@@ -228,9 +216,7 @@ def read_manifest(folder: Path) -> Json:
 def read_evaluation(folder: Path) -> Json:
     """The manifest of an evaluation of agents; studies and proofs keep theirs in the same form.
 
-    Raises:
-        UserError: there is none, or it is not an evaluation's, or of another format.
-    """
+    Raises UserError: there is none, or it is not an evaluation's, or of another format."""
     manifest = read_manifest(folder)
     if "agents" not in manifest["plan"]:
         raise UserError(f"{folder} holds no agents' episodes; give a results folder of `automotive-cosim eval`")
@@ -252,9 +238,7 @@ def write_trace(folder: Path, episode: str, lines: Iterable[Json]) -> None:
 def read_trace(folder: Path, episode: str) -> list[Json]:
     """The lines of a stored trace, the last of them the result.
 
-    Raises:
-        UserError: there is none, or it is damaged.
-    """
+    Raises UserError: there is none, or it is damaged."""
     path = trace_file(folder, episode)
     try:
         lines = files.read_json_lines(path)
@@ -279,9 +263,7 @@ def keep_files(folder: Path, files: Mapping[str, bytes]) -> None:
     Args:
         files: contents by path below it, with ``/`` between its parts.
 
-    Raises:
-        OSError: they cannot be written.
-    """
+    Raises OSError: they cannot be written."""
     for name, content in files.items():
         inner, _, file = name.rpartition("/")
         write_whole(make_folder(folder, inner) / file, content)

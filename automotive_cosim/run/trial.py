@@ -138,7 +138,6 @@ class Answers:
     """An agent's answers so far."""
 
     def __init__(self, agent: Agent, conditions: Conditions) -> None:
-        """Nothing has been answered yet."""
         self._agent, self._conditions = agent, conditions
         self._replies: list[ModelReply] = []
         self.prompts: tuple[int, ...] = ()

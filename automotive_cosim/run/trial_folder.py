@@ -35,9 +35,7 @@ def read_trial(folder: Path) -> Json:
 
     What is not known yet is left out.
 
-    Raises:
-        UserError: it cannot be read, or version 0.2 or an earlier one wrote it.
-    """
+    Raises UserError: it cannot be read, or version 0.2 or an earlier one wrote it."""
     path = folder / TRIAL
     if not path.is_file() and (found := next((name for name in FORMER if (folder / name).is_file()), None)):
         raise UserError(
@@ -59,9 +57,7 @@ def read_trial(folder: Path) -> Json:
 def read_steps(folder: Path) -> list[Json]:
     """The lines of a trial's steps so far, in the form of ``steps.jsonl``; none of a folder without any.
 
-    Raises:
-        UserError: they cannot be read.
-    """
+    Raises UserError: they cannot be read."""
     path = steps_in(folder)
     try:
         lines = read_whole_lines(path) if path.is_file() else []

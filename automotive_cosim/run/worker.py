@@ -16,10 +16,10 @@ from automotive_cosim.run.executor import Runner, failed_by
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
+from automotive_cosim.run.phase import PhaseObserver
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.stage import StageObserver
 from automotive_cosim.run.trial import Limits, TrialSetup, run_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
@@ -48,11 +48,7 @@ def run_job(
     fork_server: ForkServer,
     meter: MeterHandle | None = None,
 ) -> TrialRow:
-    """Runs one trial with its agent, as ``run_with`` does.
-
-    Raises:
-        OSError: trace or pictures cannot be written.
-    """
+    """Runs one trial with its agent, as ``run_with`` does. Raises OSError: trace or pictures cannot be written."""
     return run_with(agent_of(job, fork_server, meter), job, folder, pictures, simulations)
 
 
@@ -71,11 +67,9 @@ def run_with(
         simulations: warm simulations to use.
         observers: notified before anything is kept.
 
-    Raises:
-        OSError: trace or pictures cannot be written.
-    """
+    Raises OSError: trace or pictures cannot be written."""
     kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
-    recorder, everyone = Recorder(job, kept), [*observers, StageObserver()]
+    recorder, everyone = Recorder(job, kept), [*observers, PhaseObserver()]
     try:
         with ExitStack() as ends:
             everyone.insert(-1, ends.enter_context(closing(recorder)))
@@ -115,9 +109,7 @@ def agent_for(
         settings: what it is given, and the seed of an agent that draws.
         meter: what it shares with the evaluation's other workers.
 
-    Raises:
-        UserError: there is no such agent or model.
-    """
+    Raises UserError: there is no such agent or model."""
     if not is_outside(name):
         yield make_agent(name, settings=settings)
         return

@@ -32,9 +32,7 @@ class SearchBudget:
     def read(cls, text: str) -> SearchBudget:
         """Reads ``64``, ``2h``, ``90min``, ``5usd`` or several of them with commas.
 
-        Raises:
-            UserError: it is none of these, or one is given twice.
-        """
+        Raises UserError: it is none of these, or one is given twice."""
         given: dict[str, float] = {}
         for part in text.lower().split(","):
             found = _PART.fullmatch(part)

@@ -111,7 +111,6 @@ class DueScreen:
     """What cannot come about where."""
 
     def __post_init__(self) -> None:
-        """Reads what is known."""
         path = self.folder / DUE
         try:
             found = read_json(path) if path.is_file() else {}
@@ -157,9 +156,7 @@ class DueScreen:
 
         The space's nominal point becomes one at which something is due, by place, time or seed, if there is one.
 
-        Raises:
-            UserError: nothing comes due anywhere.
-        """
+        Raises UserError: nothing comes due anywhere."""
         if not self.screens:
             yield "nothing has to be tried first: every run of this space can be judged"
             return

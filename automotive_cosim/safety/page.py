@@ -26,9 +26,7 @@ ROWS, FINDINGS, PAGE, PLANS = "tried.jsonl", "findings.json", "search.html", "fa
 def write_findings(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> Path:
     """Writes rows, findings, plans of the failures and the page; returns the page.
 
-    Raises:
-        UserError: they cannot be written.
-    """
+    Raises UserError: they cannot be written."""
     try:
         lines = (json.dumps(row_of(each), ensure_ascii=False) for each in found.tried)
         write_whole(folder / ROWS, "".join(f"{line}\n" for line in lines))

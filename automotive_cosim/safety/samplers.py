@@ -68,11 +68,7 @@ class EvenSampler:
     """Spreads its points evenly: Sobol's sequence, scrambled, or a Latin hypercube (scipy.stats.qmc)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator, *, latin: bool = False) -> None:
-        """Lays out ``budget`` points.
-
-        Raises:
-            SetupError: scipy is not installed.
-        """
+        """Lays out ``budget`` points. Raises SetupError: scipy is not installed."""
         try:
             from scipy.stats import qmc
         except ImportError as missing:
@@ -138,7 +134,6 @@ class ClimbSampler:
     """Spreads points evenly, then takes steps from the worst ones: one factor or two at a time."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
-        """Lays out its first points."""
         even = max(min(budget, LEAST_EVEN), round(SHARE * min(budget, 64)))
         self._space, self._rng, self._even = space, rng, EvenSampler(space, even, rng)
         self._left = even
@@ -180,11 +175,7 @@ class CmaSampler:
     """Spreads points evenly, then adapts a normal distribution to the worst one (CMA-ES, ``cma``)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
-        """Lays out its first points.
-
-        Raises:
-            SetupError: cma is not installed.
-        """
+        """Lays out its first points. Raises SetupError: cma is not installed."""
         try:
             import cma
         except ImportError as missing:
@@ -214,7 +205,6 @@ class CmaSampler:
         return self._space.at(units), False
 
     def tell(self, point: SearchPoint, margin: float) -> None:
-        """Adapts the distribution after each generation."""
         self._known.append((margin, self._space.units(point)))
         if self._asked:
             self._told.append((self._asked[len(self._told)], margin))
@@ -227,11 +217,7 @@ class BayesSampler:
     """Models which values fail (tree-structured Parzen estimators, ``optuna``)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
-        """Starts a study in memory.
-
-        Raises:
-            SetupError: optuna is not installed.
-        """
+        """Starts a study in memory. Raises SetupError: optuna is not installed."""
         try:
             import optuna
         except ImportError as missing:
@@ -258,7 +244,6 @@ class BayesSampler:
         return point, self._trial.number < self._random
 
     def tell(self, point: SearchPoint, margin: float) -> None:
-        """Adds the result to the study."""
         self._study.tell(self._trial, margin)
 
 

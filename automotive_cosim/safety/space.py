@@ -216,9 +216,7 @@ class _SpaceTable:
 def space_file(name: str) -> Path:
     """The file of a space: a path, or the name of one of the library.
 
-    Raises:
-        UserError: there is neither such a file nor such a name.
-    """
+    Raises UserError: there is neither such a file nor such a name."""
     if Path(name).is_file():
         return Path(name)
     if (known := name.replace("_", "-")) in LIBRARY:
@@ -231,9 +229,7 @@ def space_file(name: str) -> Path:
 def read_space(path: Path) -> Space:
     """The space in a TOML file.
 
-    Raises:
-        UserError: it cannot be read, or a factor does not exist or has no such values.
-    """
+    Raises UserError: it cannot be read, or a factor does not exist or has no such values."""
     document = read_toml(path)
     table = document.read(_SpaceTable)
     if not table.factors:

@@ -32,11 +32,7 @@ from automotive_cosim.traffic.fork import Simulations
 
 
 def trial_of(point: SearchPoint, repeat: int = 0) -> PlannedTrial:
-    """The trial at a point.
-
-    Raises:
-        UserError: a value does not exist.
-    """
+    """The trial at a point. Raises UserError: a value does not exist."""
     values: dict[str, Any] = {"repeat": repeat, "conditions": {}, "settings": {}}
     for name, value in point.items():
         if name in CONDITIONS:
@@ -49,11 +45,7 @@ def trial_of(point: SearchPoint, repeat: int = 0) -> PlannedTrial:
 
 
 def check_space(space: Space, plan: Plan) -> None:
-    """Tries every value, each with all other factors at nominal.
-
-    Raises:
-        UserError: a value does not exist.
-    """
+    """Tries every value, each with all other factors at nominal. Raises UserError: a value does not exist."""
     for factor in space.factors:
         ends = factor.values if isinstance(factor, FactorChoices) else (factor.least, factor.most)
         for value in ends:
@@ -64,11 +56,7 @@ def check_space(space: Space, plan: Plan) -> None:
 
 
 def job_of(plan: Plan, trial: PlannedTrial) -> TrialSetup:
-    """The job of a trial for the plan's agent.
-
-    Raises:
-        UserError: it cannot be run.
-    """
+    """The job of a trial for the plan's agent. Raises UserError: it cannot be run."""
     if trial.task and trial.scenario and trial.scenario not in CATALOGUE[trial.task].runs_in:
         raise UserError(f"{trial.task} cannot run in {trial.scenario}")
     return trial.job(plan.agents[0], plan.models[0], 0, plan.limits, plan.spare_traffic)
@@ -93,9 +81,7 @@ class Trying:
     def __call__(self, point: SearchPoint, repeat: int) -> TriedOutcome:
         """What comes of a point.
 
-        Raises:
-            BudgetSpentError: nothing more may be run, or its model asked; it counts as not run.
-        """
+        Raises BudgetSpentError: nothing more may be run, or its model asked; it counts as not run."""
         trial = trial_of(point, repeat)
         try:
             job = job_of(self.plan, trial)
@@ -170,9 +156,7 @@ def trying(
         used_s: wall time of earlier starts.
         simulations: warm traffic, shared with others; None for its own.
 
-    Raises:
-        UserError: it cannot be written, or holds something else.
-    """
+    Raises UserError: it cannot be written, or holds something else."""
     with ExitStack() as ends:
         store = ends.enter_context(opened(folder, plan.as_json(), kind_of, planned=0, grows=True))
         meter = ends.enter_context(executor.metered(Budget(usd=budget.usd), spent_before(store)))

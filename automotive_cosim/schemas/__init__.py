@@ -17,20 +17,12 @@ def names() -> tuple[str, ...]:
 
 
 def text(name: str) -> str:
-    """A schema as it is shipped.
-
-    Raises:
-        UnknownNameError: there is none of that name.
-    """
+    """A schema as it is shipped. Raises UnknownNameError: there is none of that name."""
     if name not in names():
         raise UnknownNameError("schema", name, names(), "automotive-cosim show schema")
     return (files(__name__) / f"{name}{SUFFIX}").read_text(encoding="utf-8")
 
 
 def about(name: str) -> str:
-    """What a schema is of, in a line.
-
-    Raises:
-        UnknownNameError: there is none of that name.
-    """
+    """What a schema is of, in a line. Raises UnknownNameError: there is none of that name."""
     return str(json.loads(text(name))["description"])

@@ -36,9 +36,7 @@ def _said(found: Task) -> str:
 def task(name: str) -> Json:
     """One task with both halves in words, and the law on which it is based.
 
-    Raises:
-        UnknownNameError: there is none.
-    """
+    Raises UnknownNameError: there is none."""
     found = CATALOGUE[name]
     halves = []
     for half_name in found.halves:
@@ -70,11 +68,7 @@ def all_scenarios() -> Json:
 
 
 def scenario_map(name: str) -> Path:
-    """The picture of a shipped scenario's network.
-
-    Raises:
-        NotHereError: there is none.
-    """
+    """The picture of a shipped scenario's network. Raises NotHereError: there is none."""
     path = scenarios.load(name).folder / "map.webp" if name in scenarios.shipped() else None
     if path is None or not path.is_file():
         raise NotHereError(f"there is no map of a scenario {name!r}")

@@ -74,9 +74,7 @@ class Content:
     def run(self, name: str, episode: str | None = None) -> Json:
         """One recorded trial, or one of an evaluation, without its steps.
 
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        Raises UserError: it is not here, or cannot be read."""
         entry = self.records.entry(name)
         folder = self.records.trial(entry, episode)
         told = read_trial(folder)
@@ -102,11 +100,7 @@ class Content:
         }
 
     def steps(self, name: str, episode: str | None, skip: int) -> Json:
-        """The steps of an episode from number ``skip`` on.
-
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        """The steps of an episode from number ``skip`` on. Raises UserError: it is not here, or cannot be read."""
         entry = self.records.entry(name)
         folder = self.records.trial(entry, episode)
         lines = _steps_in(folder, *_stamp(folder))[skip:]
@@ -132,9 +126,7 @@ class Content:
     def sound(self, name: str, episode: str | None, step: int, number: int) -> bytes:
         """Words that were said by the end of a step, as the microphone had them: a WAV file.
 
-        Raises:
-            UserError: nothing was said then, or it cannot be made.
-        """
+        Raises UserError: nothing was said then, or it cannot be made."""
         entry = self.records.entry(name)
         folder = self.records.trial(entry, episode)
         lines = _steps_in(folder, *_stamp(folder))
@@ -148,20 +140,14 @@ class Content:
     def road(self, name: str, episode: str | None, skip: int) -> Iterable[Json]:
         """The lines of the recorded road from number ``skip`` on; without a recording, a road with the ego alone.
 
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        Raises UserError: it is not here, or cannot be read."""
         folder = self.records.trial(self.records.entry(name), episode)
         if (folder / ROAD).is_file():
             return _road_lines(folder, *_stamp(folder))[skip:]
         return list(_alone(read_trial(folder).get("result") or {}))[skip:]
 
     def evaluation(self, name: str) -> Json:
-        """The plan and the rows of an evaluation.
-
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        """The plan and the rows of an evaluation. Raises UserError: it is not here, or cannot be read."""
         entry = self.records.entry(name)
         if not entry.is_evaluation:
             raise NotHereError(f"record {name!r} is not an evaluation")
@@ -198,9 +184,7 @@ class Content:
     def reference(self, task: str) -> Json:
         """The reference solution of each half of a task, where it has been recorded with pictures.
 
-        Raises:
-            UserError: a record cannot be read.
-        """
+        Raises UserError: a record cannot be read."""
         found: dict[str, Json] = {}
         for entry in self.records.entries():
             for half, episode in _safely(entry, lambda each: self._solved(each, task)).get("solved", ()):
@@ -216,9 +200,7 @@ class Content:
     def study(self, name: str, part: str, *items: str) -> Json:
         """A part of a study, of those that its kind has for pages.
 
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        Raises UserError: it is not here, or cannot be read."""
         folder = self._study(name)
         kind = kind_of(read_manifest(folder)["plan"])
         shown = None if kind is None else kind.shown(part, folder, *items)
@@ -229,9 +211,7 @@ class Content:
     def watched_study(self, name: str) -> Json:
         """The drives of a study that are running, the newest first; it reports them while somebody asks.
 
-        Raises:
-            UserError: it is not here.
-        """
+        Raises UserError: it is not here."""
         folder = self._study(name)
         with suppress(NotHereError):  # it is older
             self.observers.observe(self.records.file(self.records.entry(name), LIVE, WATCHED))

@@ -16,6 +16,7 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Ge, Le, MinLen
 
+from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import read_toml
 from automotive_cosim.run.episode import EpisodeSetup
@@ -43,34 +44,44 @@ class PeoplePlan:
     detection: bool = False
     """Whether people also answer a red dot every few seconds (``serve.detection``)."""
 
-    @property
-    def plan(self) -> Plan:
-        """The same as an evaluation of the agent ``human``.
+    def check(self) -> None:
+        """Checks what is to be dealt.
 
-        Raises:
-            UserError: a code name is invalid or given twice, there is no such task, or there is too little to deal.
-        """
+        Raises UserError: a code name is invalid or given twice, there is no such task, or there is too little to
+        deal."""
         for name in self.people:
             check_code_name(name)
         if len(set(self.people)) < len(self.people) or len(self.people) > MOST_PEOPLE:
             raise UserError(f"people must be up to {MOST_PEOPLE} different code names")
         if self.scenario is not None:
             open_scenario(self.scenario)
-        plan = people_plan(choose(self.tasks), self.people, sorted(set(self.seeds)), scenario=self.scenario)
-        units = {_unit(job) for job in plan.episodes()}
-        if len(units) < 2 and any(job.entry.second for job in plan.episodes()):
+        jobs = self.jobs()
+        units = {_unit(job) for job in jobs}
+        if len(units) < 2 and any(job.entry.second for job in jobs):
             raise UserError("a single pair would be dealt with both halves in a row; add another task or seed")
         if not units:
             raise UserError(f"none of these tasks runs in {self.scenario}; choose other tasks or another scenario")
-        return plan
+
+    @property
+    def plan(self) -> Plan:
+        """The same as an evaluation of the agent ``human``."""
+        return people_plan(choose(self.tasks), self.people, sorted(set(self.seeds)), scenario=self.scenario)
+
+    def as_json(self) -> Json:
+        """As every report reads it."""
+        return self.plan.as_json()
+
+    def jobs(self) -> Sequence[EpisodeSetup]:
+        """Every episode of everybody."""
+        return self.plan.episodes()
+
+    def orders(self) -> Mapping[str, tuple[EpisodeSetup, ...]]:
+        """What each person plays, in order."""
+        return deal(self.jobs(), self.people, self.order_seed)
 
 
 def read_study(path: Path) -> PeoplePlan:
-    """A study's plan from its file.
-
-    Raises:
-        UserError: it cannot be read, or does not fit.
-    """
+    """A study's plan from its file. Raises UserError: it cannot be read, or does not fit."""
     return read_toml(path).read(PeoplePlan)
 
 

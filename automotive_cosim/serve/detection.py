@@ -28,9 +28,7 @@ FIGURES = ("stimuli", "hits", "hit_rate", "reaction_ms")
 def detected(asked: Json) -> Json:
     """What came of a stimulus, as the page sends it: the phase, and the reaction in ms, None if there was none.
 
-    Raises:
-        UserError: it is something else.
-    """
+    Raises UserError: it is something else."""
     phase, reaction_ms = asked.get("phase"), asked.get("reaction_ms")
     is_reaction = isinstance(reaction_ms, (int, float)) and not isinstance(reaction_ms, bool)
     if phase not in PHASES or not (reaction_ms is None or (is_reaction and 0 <= reaction_ms <= EVERY_MS[0])):

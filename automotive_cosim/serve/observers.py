@@ -24,9 +24,7 @@ class StudyObservers:
     def observe(self, path: Path) -> None:
         """Locks a file for some seconds, unless another program has already locked it.
 
-        Raises:
-            OSError: it cannot be read.
-        """
+        Raises OSError: it cannot be read."""
         with self._lock:
             file, timer = self._marked.get(path, (None, None))
             if timer is not None:
@@ -39,7 +37,6 @@ class StudyObservers:
             self._marked[path] = file, timer
 
     def close(self) -> None:
-        """Releases all locks."""
         for path in list(self._marked):
             self._leave(path)
 

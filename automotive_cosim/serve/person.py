@@ -59,11 +59,7 @@ class Person:
         self._told: Callable[[Observation], None] | None = None
 
     def give(self, action: Action) -> None:
-        """Hands in an action.
-
-        Raises:
-            UserError: too many are already waiting, or the clock is stopped.
-        """
+        """Hands in an action. Raises UserError: too many are already waiting, or the clock is stopped."""
         if not self._goes.is_set():
             raise UserError("the clock is stopped; resume it first")
         if self._given.qsize() >= WAITING:

@@ -136,9 +136,7 @@ class Game(TrialObserver):
             name: code name of the person.
             practice: it may be paused and slowed, and gives no row.
 
-        Raises:
-            UserError: one is running, there is no such task or half, or the name is no code name.
-        """
+        Raises UserError: one is running, there is no such task or half, or the name is no code name."""
         chosen = CATALOGUE[task]
         half = half or chosen.halves[int(np.random.default_rng([seed, 5]).integers(len(chosen.halves)))]
         chosen.half(half)
@@ -161,9 +159,7 @@ class Game(TrialObserver):
             name: code name of the person.
             practice: it may be paused and slowed, and does not count.
 
-        Raises:
-            UserError: an episode is running, there is no such family, or the name is no code name.
-        """
+        Raises UserError: an episode is running, there is no such family, or the name is no code name."""
         family_named(family)
         if name or not practice:
             check_code_name(name)
@@ -181,9 +177,7 @@ class Game(TrialObserver):
             folder: the evaluation that it belongs to.
             keep: takes its row.
 
-        Raises:
-            UserError: one is running.
-        """
+        Raises UserError: one is running."""
         self._begin(Person(job.model, counts=True), lambda: self._count(job, folder, keep))
 
     @property
@@ -194,9 +188,7 @@ class Game(TrialObserver):
     def pace(self, speed: float, *, paused: bool) -> None:
         """Slows an episode of practice, or stops its clock.
 
-        Raises:
-            UserError: the episode counts, nothing runs, or the speed is none of ``SPEEDS``.
-        """
+        Raises UserError: the episode counts, nothing runs, or the speed is none of ``SPEEDS``."""
         if speed not in SPEEDS:
             raise UserError(f"speed {speed:g} is not one of {', '.join(f'{each:g}' for each in SPEEDS)}")
         if not self._scene.is_practice or self._scene.state is not PlayState.ACTING:
@@ -210,9 +202,7 @@ class Game(TrialObserver):
         Returns:
             The screen as the action will leave it, as a JPEG, before the road has taken that second.
 
-        Raises:
-            UserError: it is malformed, too many wait, or no action is possible now.
-        """
+        Raises UserError: it is malformed, too many wait, or no action is possible now."""
         given = parse(action)
         with self._hand:
             if self._scene.state is not PlayState.ACTING:

@@ -66,9 +66,7 @@ def people_plan(
 def check_code_name(name: str) -> None:
     """Refuses names that cannot be used for a person in reports and file names.
 
-    Raises:
-        UserError: it is empty, too long, or has characters other than letters, digits, spaces, - and _.
-    """
+    Raises UserError: it is empty, too long, or has characters other than letters, digits, spaces, - and _."""
     is_plain = all(letter.isalnum() or letter in " -_" for letter in name)
     if not name.strip() or len(name) > LONGEST_NAME or not is_plain:
         raise UserError(
@@ -98,12 +96,12 @@ class PlayedRows(ABC, Generic[R]):
         """The smallest plan that has these rows, which are all that were meant to be run."""
 
     def close(self) -> None:
-        """Lets another process write."""
         with self._lock:
             self._ends.close()
             self._store = None
 
-    def _append(self, row: R) -> None:
+    def keep(self, row: R) -> None:
+        """Adds a row. Raises UserError: it cannot be written."""
         with self._lock:
             store = self._opened()
             store.append(row)
@@ -141,22 +139,12 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
     def job(self, task: str, half: str, seed: int, name: str) -> EpisodeSetup:
         """The next episode of a person.
 
-        Raises:
-            UserError: there is no such task or half, or another process writes here.
-        """
+        Raises UserError: there is no such task or half, or another process writes here."""
         jobs = people_plan((task,), (name,), (seed,), scenario=self._scenario).episodes()
         found = next((job for job in jobs if isinstance(job, EpisodeSetup) and job.half == half), None)
         if found is None:
             raise UserError(f"task {task!r} has no half {half!r} that runs in {self._scenario or 'any scenario'}")
         return replace(found, repeat=self._first(lambda repeat: replace(found, repeat=repeat).id))
-
-    def keep(self, row: EpisodeRow) -> None:
-        """Adds a row.
-
-        Raises:
-            UserError: it cannot be written.
-        """
-        self._append(row)
 
     def plan_of(self, rows: Sequence[EpisodeRow]) -> Json:
         return people_plan(
@@ -174,24 +162,12 @@ class PlayedDrives(PlayedRows[DriveTrialRow]):
     kind = DriveTrialRow
 
     def drive(self, family: str, seed: int, name: str) -> DriveSetup:
-        """The next drive of a person.
-
-        Raises:
-            UserError: another process writes here.
-        """
+        """The next drive of a person. Raises UserError: another process writes here."""
 
         def at(repeat: int) -> DriveSetup:
             return DriveSetup(family, seed, CONDITIONS, agent=HUMAN, model=name, repeat=repeat)
 
         return at(self._first(lambda repeat: at(repeat).id))
-
-    def keep(self, row: DriveTrialRow) -> None:
-        """Adds a drive.
-
-        Raises:
-            UserError: it cannot be written.
-        """
-        self._append(row)
 
     def plan_of(self, rows: Sequence[DriveTrialRow]) -> Json:
         plan = Plan(

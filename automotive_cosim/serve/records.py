@@ -40,11 +40,7 @@ class RecordFolders:
     """The records below some folders."""
 
     def __init__(self, folders: Sequence[Path]) -> None:
-        """Keeps the folders, which may still be empty.
-
-        Raises:
-            UserError: one of them is not a folder.
-        """
+        """Keeps the folders, which may still be empty. Raises UserError: one of them is not a folder."""
         for folder in folders:
             if not folder.is_dir():
                 raise UserError(
@@ -60,11 +56,7 @@ class RecordFolders:
         return sorted(found.values(), key=lambda entry: _changed_s(entry.folder), reverse=True)[:MOST]
 
     def entry(self, name: str) -> RecordEntry:
-        """The record of that id.
-
-        Raises:
-            NotHereError: there is none.
-        """
+        """The record of that id. Raises NotHereError: there is none."""
         if name not in self._known:
             self.entries()
         found = self._known.get(name)
@@ -73,11 +65,7 @@ class RecordFolders:
         return found
 
     def of(self, folder: Path) -> RecordEntry:
-        """The recorded trial in a folder.
-
-        Raises:
-            NotHereError: it is not below the folders given.
-        """
+        """The recorded trial in a folder. Raises NotHereError: it is not below the folders given."""
         return self.entry(_id(folder.resolve()))
 
     def beside(self, entry: RecordEntry) -> str | None:
@@ -92,9 +80,7 @@ class RecordFolders:
         Args:
             parts: names below its folder, of which none may lead elsewhere.
 
-        Raises:
-            NotHereError: there is no such file, or it lies outside the folders given.
-        """
+        Raises NotHereError: there is no such file, or it lies outside the folders given."""
         if not all(map(_is_name, parts)):
             raise NotHereError("there is no such file")
         path = entry.folder.joinpath(*parts)
@@ -109,9 +95,7 @@ class RecordFolders:
         Args:
             trial: id of the trial in an evaluation or a study; None for a recorded trial.
 
-        Raises:
-            NotHereError: there is no such trial, or a file of it lies outside the folders given.
-        """
+        Raises NotHereError: there is no such trial, or a file of it lies outside the folders given."""
         if trial is None:
             found = [entry.folder]
         elif _is_name(trial):
@@ -134,9 +118,7 @@ class RecordFolders:
             folder: the trial's, from ``trial``.
             of: ``screenshot`` or ``road_view`` of ``formats.layout``.
 
-        Raises:
-            NotHereError: there is none.
-        """
+        Raises NotHereError: there is none."""
         return self.file(entry, *of(folder, step).relative_to(entry.folder).parts)
 
 

@@ -114,9 +114,7 @@ class Site:
             game: lets a person play; None if playing is off.
             study: deals episodes to several people; None if there is none.
 
-        Raises:
-            UserError: a folder does not exist.
-        """
+        Raises UserError: a folder does not exist."""
         self._game = game
         self._study = study
         self._content = Content(RecordFolders(folders))
@@ -184,9 +182,7 @@ class Site:
     def answer(self, path: str, query: Mapping[str, str], visitor: Visitor = Visitor.OWNER) -> WebAnswer:
         """The answer to a path.
 
-        Raises:
-            _RefusedRequestError: there is no such page, it is not for this visitor, or it cannot be made.
-        """
+        Raises _RefusedRequestError: there is no such page, it is not for this visitor, or it cannot be made."""
         if path == "/api/about":
             about = {"version": __version__, "plays": self._game is not None, "visitor": visitor}
             return _json(about | {"study": self._study and self._study.name})
@@ -206,9 +202,7 @@ class Site:
     def change(self, path: str, query: Mapping[str, str], body: bytes, visitor: Visitor) -> WebAnswer:
         """Carries out a player's request.
 
-        Raises:
-            _RefusedRequestError: there is no such action, or it is not possible now.
-        """
+        Raises _RefusedRequestError: there is no such action, or it is not possible now."""
         is_study = path.startswith("/api/study/") and self._study is not None
         is_play = path.startswith("/api/play/") and self._game is not None and visitor is Visitor.OWNER
         if not is_study and not is_play:
@@ -342,9 +336,7 @@ class WebServer(ThreadingHTTPServer):
             study: deals episodes to several people. The server closes it.
             port: port to listen on; 0 takes a free one.
 
-        Raises:
-            UserError: a folder does not exist, or the address cannot be used.
-        """
+        Raises UserError: a folder does not exist, or the address cannot be used."""
         self.site = Site(folders, game, study)
         self.token = secrets.token_urlsafe(24)
         self.people_token = secrets.token_urlsafe(24)
@@ -429,11 +421,7 @@ class _Heads:
         self.left = MOST_HEAD_BYTES
 
     def readline(self, size: int = -1, /) -> bytes:
-        """A line of a head.
-
-        Raises:
-            LineTooLong: the head is longer than it may be.
-        """
+        """A line of a head. Raises LineTooLong: the head is longer than it may be."""
         line = self._file.readline(min(size, self.left + 1) if size >= 0 else self.left + 1)
         self.left -= len(line)
         if self.left < 0:
@@ -454,7 +442,6 @@ class _RequestHandler(BaseHTTPRequestHandler):
     """A body does not wait until the browser has acknowledged the headers."""
 
     def setup(self) -> None:
-        """Reads heads up to their longest."""
         super().setup()
         self.rfile = _Heads(self.rfile)  # type: ignore[assignment, arg-type]
 
@@ -479,7 +466,6 @@ class _RequestHandler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.OK, self._web.site.answer(path, query, visitor))
 
     def do_HEAD(self) -> None:
-        """The same without a body."""
         self.do_GET()
 
     def do_POST(self) -> None:
@@ -518,9 +504,7 @@ class _RequestHandler(BaseHTTPRequestHandler):
     def _request(self) -> tuple[str, dict[str, str], Visitor]:
         """The path, the query and the visitor of a request that may be answered.
 
-        Raises:
-            _RefusedRequestError: it comes from elsewhere, or without the token.
-        """
+        Raises _RefusedRequestError: it comes from elsewhere, or without the token."""
         host = self.headers.get("Host", "")
         if not is_own(host, self._web.names, self._web.server_port):
             raise _RefusedRequestError(

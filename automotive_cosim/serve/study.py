@@ -26,11 +26,12 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.formats.files import read_whole_lines
+from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.formats.writing import add_line, growing
+from automotive_cosim.run.batch import kept
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.store import opened
-from automotive_cosim.serve.dealing import PeoplePlan, deal
+from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.detection import PHASES, TOLD, detected, figures
 from automotive_cosim.serve.play import Game
 from automotive_cosim.traffic.fork import Simulations
@@ -66,17 +67,13 @@ class PeopleStudy:
             folder: of the study, new or started with the same plan.
             simulations: warm simulations to use, which the caller closes; by default its own.
 
-        Raises:
-            UserError: the plan does not fit, or the folder belongs to something else or is in use.
-        """
-        whole = plan.plan
-        jobs = whole.episodes()
+        Raises UserError: the plan does not fit, or the folder belongs to something else or is in use."""
         self.name = folder.name
         self.folder = folder
         self._detects = plan.detection
-        self._orders = deal(jobs, plan.people, plan.order_seed)
         self._ends = ExitStack()
-        self._store = self._ends.enter_context(opened(folder, whole.as_json(), EpisodeRow, planned=len(jobs)))
+        self._store = self._ends.enter_context(kept(plan, folder, EpisodeRow, (TRACES, PICTURES)))
+        self._orders = plan.orders()
         self._log = folder / LOG
         self._events = _read(self._log)
         self._own = Simulations() if simulations is None else None
@@ -104,9 +101,7 @@ class PeopleStudy:
         Args:
             seat: an earlier secret, which keeps its seat.
 
-        Raises:
-            UserError: there is no such person, or the seat is taken.
-        """
+        Raises UserError: there is no such person, or the seat is taken."""
         with self._lock:
             if person not in self._orders:
                 raise UserError(f"this study has no code name {person[:40]!r}; choose one from the list")
@@ -122,11 +117,7 @@ class PeopleStudy:
             return made
 
     def seat(self, secret: str) -> StudySeat:
-        """The person in a seat.
-
-        Raises:
-            UserError: the seat is empty, e.g. because the server was restarted.
-        """
+        """The person in a seat. Raises UserError: the seat is empty, e.g. because the server was restarted."""
         with self._lock:
             if secret not in self._seats:
                 raise UserError("this session is over; choose your code name again")
@@ -134,11 +125,7 @@ class PeopleStudy:
             return self._seats[secret]
 
     def turn(self, secret: str) -> Json:
-        """A person's next task; the verdicts once everything is done.
-
-        Raises:
-            UserError: the seat is empty.
-        """
+        """A person's next task; the verdicts once everything is done. Raises UserError: the seat is empty."""
         person = self.seat(secret).person
         with self._lock:
             order = self._orders[person]
@@ -164,9 +151,7 @@ class PeopleStudy:
     def begin(self, secret: str) -> None:
         """Begins the next episode of a person.
 
-        Raises:
-            UserError: the seat is empty, there is none, the last one's questions are open, or one is running.
-        """
+        Raises UserError: the seat is empty, there is none, the last one's questions are open, or one is running."""
         seat = self.seat(secret)
         with self._lock:
             job = self._next(seat.person)
@@ -180,9 +165,7 @@ class PeopleStudy:
     def answer(self, secret: str, answers: Mapping[str, Any]) -> None:
         """Takes the answers to the questions, each 1 to 5.
 
-        Raises:
-            UserError: the seat is empty, nothing is asked, or an answer is missing or invalid.
-        """
+        Raises UserError: the seat is empty, nothing is asked, or an answer is missing or invalid."""
         person = self.seat(secret).person
         for name in QUESTIONS:
             if type(answers.get(name)) is not int or not 1 <= answers[name] <= len(SCALE):
@@ -196,9 +179,7 @@ class PeopleStudy:
     def detect(self, secret: str, asked: Json) -> None:
         """Takes what came of a stimulus of the episode that a person plays.
 
-        Raises:
-            UserError: the seat is empty, nothing is played or to be detected, or it is no reaction.
-        """
+        Raises UserError: the seat is empty, nothing is played or to be detected, or it is no reaction."""
         person = self.seat(secret).person
         came = detected(asked)
         with self._lock:
@@ -305,11 +286,7 @@ PARTS = ("goal", "clean", "safe", "in_time", "declared")
 
 
 def _read(path: Path) -> list[Json]:
-    """The whole lines of a log.
-
-    Raises:
-        UserError: another line cannot be read.
-    """
+    """The whole lines of a log. Raises UserError: another line cannot be read."""
     if not path.is_file():
         return []
     try:

@@ -141,11 +141,7 @@ class EpisodeService:
         return _turn(episode_id, episode)
 
     def observe(self, episode_id: str) -> EpisodeTurn:
-        """The present turn; no time passes.
-
-        Raises:
-            UserError: there is no such episode.
-        """
+        """The present turn; no time passes. Raises UserError: there is no such episode."""
         with self._held(episode_id) as running:
             return _turn(episode_id, running.episode)
 

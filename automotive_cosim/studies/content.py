@@ -55,9 +55,7 @@ class StudyContent(Generic[PlanT, StudyRowT]):
     def read(cls, folder: Path) -> Self:
         """Reads a folder, even of a running study.
 
-        Raises:
-            UserError: it is not such a study's folder, or is damaged.
-        """
+        Raises UserError: it is not such a study's folder, or is damaged."""
         manifest = read_manifest(folder)
         plan = plan_of(cls.plan_type, manifest["plan"])
         rows = read_rows(folder, cls.row_type)
@@ -119,9 +117,7 @@ def _lines(folder: Path) -> list[Json]:
 def read_study(folder: Path, kind: str) -> StudyContent[Any, Any]:
     """The content of a folder of a kind, even of a running study.
 
-    Raises:
-        UserError: it is not such a study's folder, or is damaged.
-    """
+    Raises UserError: it is not such a study's folder, or is damaged."""
     content: type[StudyContent[Any, Any]] = resolve_name(
         f"{HOME}.{NETWORKS[kind][0] if kind in NETWORKS else REROUTE}"
     )
@@ -148,9 +144,7 @@ def write_report(folder: Path) -> Path:
 def write_shown(study: StudyContent[Any, Any], shown: ShownStudy) -> Path:
     """Writes ``report.html``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
 
-    Raises:
-        UserError: they cannot be written.
-    """
+    Raises UserError: they cannot be written."""
     plan, folder = study.plan, study.folder
     try:
         text = render(

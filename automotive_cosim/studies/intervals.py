@@ -65,9 +65,7 @@ def _clustered(groups: Sequence[Sequence[float]]) -> Interval:
     its Satterthwaite approximation: R. M. Bell and D. F. McCaffrey, Survey Methodology 28, 2002; G. W. Imbens and
     M. Kolesar, Review of Economics and Statistics 98, 2016). Seeds of equal size get one degree fewer than seeds.
 
-    Raises:
-        SetupError: scipy is not installed.
-    """
+    Raises SetupError: scipy is not installed."""
     try:
         from scipy.special import stdtrit
     except ImportError as missing:

@@ -54,9 +54,7 @@ class SeedJob(Job, Generic[P, R]):
 def opened(name: str, from_place: str = "", to_place: str = "") -> Scenario:
     """A scenario with the ego's routes, cached: every job needs it and a foreign network takes a second to read.
 
-    Raises:
-        ScenarioError: it cannot be read, or has no such route.
-    """
+    Raises ScenarioError: it cannot be read, or has no such route."""
     return open_scenario(name, from_place=from_place, to_place=to_place)
 
 
@@ -83,11 +81,7 @@ def driven_at(
 
 
 def check_edges(incident: Incident, place: str, scenario: Scenario) -> None:
-    """Checks that an incident is on edges that the network has.
-
-    Raises:
-        UserError: one is missing.
-    """
+    """Checks that an incident is on edges that the network has. Raises UserError: one is missing."""
     edges = network_of(scenario).edges
     for name in ("edge", "edges", "from_edge", "to_edge"):
         value = getattr(incident, name, ())
@@ -99,9 +93,7 @@ def check_edges(incident: Incident, place: str, scenario: Scenario) -> None:
 def plan_of(plan: type[P], values: Mapping[str, Any]) -> P:
     """The plan of a study from a manifest's table.
 
-    Raises:
-        UserError: it is another kind of study, or of another version.
-    """
+    Raises UserError: it is another kind of study, or of another version."""
     given = dict(values)
     if given.pop("study", None) == plan.kind:
         with suppress(UserError):  # its message would mention options that the user has not given
@@ -110,11 +102,7 @@ def plan_of(plan: type[P], values: Mapping[str, Any]) -> P:
 
 
 def check_values(plan: TrafficSettings) -> None:
-    """Checks the values of a plan one by one.
-
-    Raises:
-        UserError: one is not valid; the message names the option.
-    """
+    """Checks the values of a plan one by one. Raises UserError: one is not valid; the message names the option."""
     _checked(type(plan), asdict(plan))
     for name in plan.sets:
         values = getattr(plan, name)

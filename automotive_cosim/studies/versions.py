@@ -65,9 +65,7 @@ class Pair:
 def pairs(first: Path, second: Path) -> tuple[Pair, ...]:
     """The studies of two folders; of several networks, those of the same one, wherever it stands in the list.
 
-    Raises:
-        UserError: a folder has no study, or the two have none in common.
-    """
+    Raises UserError: a folder has no study, or the two have none in common."""
     if (first / "manifest.json").is_file() or (second / "manifest.json").is_file():
         return (_pair(f"{first} and {second}", first, second),)
     ones, twos = _networks(first), _networks(second)

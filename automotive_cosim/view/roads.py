@@ -216,11 +216,7 @@ class StreetMap:
         return [outline for area, outline in near if area.kind is GroundKind.BUILDING]
 
     def street(self, edge_id: str) -> EdgeView:
-        """One edge of the network.
-
-        Raises:
-            KeyError: there is none.
-        """
+        """One edge of the network. Raises KeyError: there is none."""
         if edge_id not in self._streets:
             self._streets[edge_id] = self._drawn(edge_id, self._lanes[edge_id])
         return self._streets[edge_id]

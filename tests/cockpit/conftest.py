@@ -25,7 +25,6 @@ from automotive_cosim.contracts import (
     Connectivity,
     Direction,
     DrivingState,
-    Element,
     FeedbackCode,
     GpsFix,
     Limit,
@@ -38,6 +37,7 @@ from automotive_cosim.contracts import (
     Weather,
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
+from tests.cockpit.fingers import middle
 
 NAMES = (
     "Rue de Rivoli",
@@ -114,12 +114,6 @@ class View:
     way: tuple[str, ...]
     """Widgets to tap, from home on."""
     cockpit: Cockpit
-
-
-def middle(element: Element) -> tuple[int, int]:
-    """Where a finger goes."""
-    box = element.bbox_pixels
-    return (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
 
 
 def walk(home: Cockpit) -> tuple[View, ...]:

@@ -93,7 +93,7 @@ def made(part: int = 1) -> dict[str, Listing]:
 def fitted(view: View, size: ScreenSize) -> View:
     """The view on a screen of that size."""
     there = view.cockpit.copy()
-    there.fit(size)
+    there.resize(size)
     return replace(view, cockpit=there)
 
 

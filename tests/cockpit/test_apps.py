@@ -41,22 +41,13 @@ from automotive_cosim.contracts import (
     RouteOption,
     Surroundings,
 )
-from automotive_cosim.contracts.ids import resource_id as shown_id
+from tests.cockpit.fingers import find, press, shown
 
 from .couplings import COUPLED
 
 Make = Callable[..., Cockpit]
 OK, NO_EFFECT = FeedbackCode.OK, FeedbackCode.NO_EFFECT
 SEEDS = (1, 2, 99)
-
-
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
-    return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
-
-
-def shown(cockpit: Cockpit, key: str) -> str:
-    return next((element.text for element in cockpit.elements() if element.resource_id == shown_id(key)), "")
 
 
 def stopped(surroundings: Surroundings) -> Surroundings:
@@ -70,8 +61,7 @@ def parked(make: Make, around: Surroundings) -> Cockpit:
 
 def test_the_cabin_with_keep_climate_is_two_taps_away_from_climate(make: Make) -> None:
     cockpit = make()
-    cockpit.open_app("climate")
-    assert press(cockpit, "hvac.comfort") is FeedbackCode.OK
+    assert press(cockpit, "open climate; hvac.comfort") is FeedbackCode.OK
     assert press(cockpit, "comfort.cabin") is FeedbackCode.OK
     assert press(cockpit, "cabin.keep_climate") is FeedbackCode.OK
     assert cockpit.signals[HVAC.KEPT]
@@ -150,12 +140,9 @@ def test_turns_are_named_by_their_angle_and_the_street_they_lead_to() -> None:
 
 
 def test_a_place_is_reached_by_its_edge_and_shown_by_its_name(cockpit: Cockpit) -> None:
-    cockpit.open_app("map")
-    press(cockpit, "map.list.explore")
-    press(cockpit, "explore.kind.charging")
+    press(cockpit, "open map; map.list.explore; explore.kind.charging")
     name = shown(cockpit, "explore.place.0")
-    press(cockpit, "explore.place.0")
-    assert press(cockpit, "place.start") is OK
+    assert press(cockpit, "explore.place.0; place.start") is OK
     (request,) = cockpit.drain_requests()
     assert isinstance(request, Reroute)
     assert request.destination != name
@@ -172,8 +159,7 @@ def test_a_stop_keeps_the_destination_to_go_on_to(cockpit: Cockpit) -> None:
     def go(index: int, button: str) -> str:
         cockpit.open_app("map")
         name = shown(cockpit, f"map.place.{index}")
-        press(cockpit, f"map.place.{index}")
-        assert press(cockpit, button) is OK
+        assert press(cockpit, f"map.place.{index}", button) is OK
         (request,) = cockpit.drain_requests()
         cockpit.answered(request, Answer(True, "new route"))
         return name
@@ -182,10 +168,7 @@ def test_a_stop_keeps_the_destination_to_go_on_to(cockpit: Cockpit) -> None:
     stop = go(1, "place.stop")
     assert cockpit.commands()["navigation.destination"] == stop
     assert cockpit.commands()["navigation.onward"] == goal
-    cockpit.open_app("map")
-    press(cockpit, "map.route")
-    press(cockpit, "route.tab.options")
-    assert press(cockpit, "route.onward") is OK
+    assert press(cockpit, "open map; map.route; route.tab.options; route.onward") is OK
     cockpit.answered(cockpit.drain_requests()[0], Answer(True, "new route"))
     assert cockpit.commands()["navigation.destination"] == goal
     assert cockpit.commands()["navigation.onward"] == ""
@@ -195,15 +178,11 @@ def test_favourites_and_avoidances_are_kept_and_undone(cockpit: Cockpit) -> None
     before = cockpit.commands()
     cockpit.open_app("map")
     name = shown(cockpit, "map.place.0")
-    press(cockpit, "map.place.0")
-    press(cockpit, "place.save")
+    press(cockpit, "map.place.0; place.save")
     assert name not in cockpit.commands()["navigation.favourites"]
     press(cockpit, "place.save")
     assert sorted(cockpit.commands()["navigation.favourites"]) == sorted(before["navigation.favourites"])
-    cockpit.open_app("map")
-    press(cockpit, "map.route")
-    press(cockpit, "route.tab.options")
-    press(cockpit, "route.avoid.tolls")
+    press(cockpit, "open map; map.route; route.tab.options; route.avoid.tolls")
     assert cockpit.commands()["navigation.avoid"] == ["tolls"]
     press(cockpit, "route.avoid.tolls")
     assert cockpit.commands()["navigation.avoid"] == []
@@ -213,18 +192,15 @@ def test_another_way_is_offered_with_its_time_and_taken_by_its_edges(make: Make,
     other = RouteOption(("e6_5", "n6_6"), 3900.0, 520.0, 20.0)
     ahead = replace(around.driving.ahead, alternatives=(other,))
     cockpit = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)))
-    cockpit.open_app("map")
-    press(cockpit, "map.route")
-    press(cockpit, "route.tab.ways")
-    element = next(element for element in cockpit.elements() if element.resource_id == shown_id("route.way.0"))
+    press(cockpit, "open map; map.route; route.tab.ways")
+    element = find(cockpit, "route.way.0")
     assert "2 min shorter" in element.content_description
     assert press(cockpit, "route.way.0") is OK
     assert cockpit.drain_requests() == (Reroute(edges=other.edges),)
 
 
 def test_places_are_found_by_name_and_by_enter(parked: Cockpit) -> None:
-    parked.open_app("map")
-    press(parked, "map.search")
+    press(parked, "open map; map.search")
     assert parked.key_enter().code is FeedbackCode.REFUSED
     parked.type_text("pharmacy")
     assert shown(parked, "map.place.0").endswith("Pharmacy")
@@ -250,9 +226,7 @@ def test_a_tap_plays_and_an_ended_track_is_followed_by_the_next(cockpit: Cockpit
 
 
 def test_repeat_plays_the_same_again(cockpit: Cockpit, around: Surroundings) -> None:
-    cockpit.open_app("media")
-    press(cockpit, "media.entry.0")
-    press(cockpit, "media.repeat")
+    press(cockpit, "open media; media.entry.0; media.repeat")
     first = cockpit.signals[MEDIA.TRACK]
     cockpit.sense(around, 331.0)
     assert cockpit.signals[MEDIA.TRACK] == first
@@ -277,8 +251,7 @@ def test_shuffle_goes_through_everything_in_another_order(cockpit: Cockpit) -> N
 
 
 def test_a_playlist_plays_its_own_tracks_and_takes_what_plays(cockpit: Cockpit) -> None:
-    cockpit.open_app("media")
-    press(cockpit, "media.list.playlists")
+    press(cockpit, "open media; media.list.playlists")
     name = shown(cockpit, "media.playlist.1")
     press(cockpit, "media.playlist.1")
     uris = cockpit.commands()["media.playlists"][name]
@@ -293,41 +266,28 @@ def test_a_playlist_plays_its_own_tracks_and_takes_what_plays(cockpit: Cockpit) 
 
 
 def test_another_source_leaves_the_playlist(cockpit: Cockpit) -> None:
-    cockpit.open_app("media")
-    press(cockpit, "media.list.playlists")
-    press(cockpit, "media.playlist.0")
-    press(cockpit, "playlist.play")
+    press(cockpit, "open media; media.list.playlists; media.playlist.0; playlist.play")
     assert cockpit.commands()["media.playlist"]
-    cockpit.open_app("home")
-    cockpit.open_app("media")
-    press(cockpit, "media.source.usb")
-    press(cockpit, "media.next")
+    press(cockpit, "open home; open media; media.source.usb; media.next")
     assert cockpit.signals[MEDIA.PLAYED] == "usb:1"
     assert cockpit.commands()["media.playlist"] == ""
 
 
 def test_podcasts_need_a_connection(cockpit: Cockpit, around: Surroundings) -> None:
-    cockpit.open_app("media")
-    press(cockpit, "media.source.internet")
-    assert press(cockpit, "media.entry.1") is OK
-    cockpit.open_app("settings")
-    press(cockpit, "settings.page.connections")
-    press(cockpit, "link.mobile")
+    assert press(cockpit, "open media; media.source.internet; media.entry.1") is OK
+    press(cockpit, "open settings; settings.page.connections; link.mobile")
     cockpit.sense(around, 1.0)
     assert not cockpit.signals[LINK.ONLINE]
-    cockpit.open_app("media")
-    assert press(cockpit, "media.entry.2") is FeedbackCode.DISABLED
+    assert press(cockpit, "open media; media.entry.2") is FeedbackCode.DISABLED
 
 
 # --- phone ----------------------------------------------------------------------------------------------------
 
 
 def test_a_call_goes_out_lasts_and_ends(cockpit: Cockpit, around: Surroundings) -> None:
-    cockpit.open_app("phone")
-    press(cockpit, "phone.tab.contacts")
+    press(cockpit, "open phone; phone.tab.contacts")
     name = shown(cockpit, "phone.contact.3")
-    press(cockpit, "phone.contact.3")
-    assert press(cockpit, "contact.call") is OK
+    assert press(cockpit, "phone.contact.3; contact.call") is OK
     driving = replace(around.driving, time_s=around.driving.time_s + 75)
     cockpit.sense(replace(around, driving=driving), 75.0)
     assert shown(cockpit, "call.who") == name
@@ -337,17 +297,15 @@ def test_a_call_goes_out_lasts_and_ends(cockpit: Cockpit, around: Surroundings) 
     assert press(cockpit, "call.end") is OK
     assert cockpit.commands()["phone.on_call"] == ""
     assert cockpit.commands()["calls"] == [name]
-    cockpit.open_app("phone")
-    press(cockpit, "phone.tab.recents")
+    press(cockpit, "open phone; phone.tab.recents")
     assert shown(cockpit, "phone.recent.0") == name
 
 
 def test_a_list_of_people_says_that_a_tap_opens_them_and_calls_nobody(cockpit: Cockpit) -> None:
     for tab, first in (("favourites", "favourite"), ("recents", "recent"), ("contacts", "contact")):
-        cockpit.open_app("phone")
-        press(cockpit, f"phone.tab.{tab}")
+        press(cockpit, "open phone", f"phone.tab.{tab}")
         assert shown(cockpit, "phone.about") == "Select a contact to call or message"
-        entry = next(one for one in cockpit.elements() if one.resource_id == shown_id(f"phone.{first}.0"))
+        entry = find(cockpit, f"phone.{first}.0")
         assert entry.content_description.startswith("Call or message")
         assert press(cockpit, f"phone.{first}.0") is OK
         assert (cockpit.screen, shown(cockpit, "contact.call")) == ("contact", "Call")
@@ -358,22 +316,18 @@ def test_one_phone_is_paired_for_calls_and_the_tablet_beside_it(parked: Cockpit)
     def paired() -> list[str]:
         return list(parked.commands()["bluetooth.devices"])
 
-    parked.open_app("settings")
-    press(parked, "settings.page.connections")
-    assert press(parked, "link.device.2") is OK
+    assert press(parked, "open settings; settings.page.connections; link.device.2") is OK
     assert paired() == ["Driver's phone", "Tablet"]
     assert press(parked, "link.device.1") is OK
     assert paired() == ["Second phone", "Tablet"]
     parked.open_app("phone")
     assert shown(parked, "phone.device") == "Second phone"
-    press(parked, "phone.devices")
-    assert press(parked, "link.device.2") is OK
+    assert press(parked, "phone.devices; link.device.2") is OK
     assert paired() == ["Second phone"]
 
 
 def test_balance_and_fader_tell_the_side(cockpit: Cockpit) -> None:
-    cockpit.open_app("settings")
-    press(cockpit, "settings.page.sound")
+    press(cockpit, "open settings; settings.page.sound")
     assert (shown(cockpit, "sound.balance"), shown(cockpit, "sound.fader")) == ("0", "0")
     cockpit.inject(MEDIA.BALANCE.path, -20.0)
     cockpit.inject(MEDIA.FADER.path, 30.0)
@@ -384,21 +338,21 @@ def test_balance_and_fader_tell_the_side(cockpit: Cockpit) -> None:
 
 
 def test_no_call_without_a_phone(cockpit: Cockpit) -> None:
-    cockpit.open_app("settings")
-    press(cockpit, "settings.page.connections")
-    press(cockpit, "link.bluetooth")
-    cockpit.open_app("phone")
-    press(cockpit, "phone.favourite.0")
-    assert press(cockpit, "contact.call") is FeedbackCode.REFUSED
+    assert (
+        press(
+            cockpit,
+            "open settings; settings.page.connections; link.bluetooth; open phone; phone.favourite.0",
+            "contact.call",
+        )
+        is FeedbackCode.REFUSED
+    )
     assert cockpit.commands()["calls"] == []
 
 
 def test_a_message_is_read_out_while_driving_and_shown_while_parked(make: Make, parked: Cockpit) -> None:
     moving = make()
     for cockpit in (moving, parked):
-        cockpit.open_app("phone")
-        press(cockpit, "phone.tab.messages")
-        press(cockpit, "phone.thread.0")
+        press(cockpit, "open phone; phone.tab.messages; phone.thread.0")
         assert shown(cockpit, "thread.line.0") == ""
         who = shown(cockpit, "thread.who")
         assert press(cockpit, "thread.read") is (FeedbackCode.READ_OUT if cockpit is moving else OK)
@@ -410,19 +364,14 @@ def test_a_message_is_read_out_while_driving_and_shown_while_parked(make: Make, 
 def test_an_answer_leaves_unread_what_nobody_has_heard(make: Make, parked: Cockpit) -> None:
     for cockpit in (make(), parked):
         unread = cockpit.signals[CALL.UNREAD]
-        cockpit.open_app("phone")
-        press(cockpit, "phone.tab.messages")
-        press(cockpit, "phone.thread.0")
-        assert press(cockpit, "thread.answer.2") is OK
+        assert press(cockpit, "open phone; phone.tab.messages; phone.thread.0; thread.answer.2") is OK
         assert (cockpit.commands()["messages.read"], cockpit.signals[CALL.UNREAD]) == ([], unread)
         assert press(cockpit, "thread.read") in (OK, FeedbackCode.READ_OUT)
         assert cockpit.signals[CALL.UNREAD] == unread - 1
 
 
 def test_an_answer_goes_out_once_for_each_tap(cockpit: Cockpit) -> None:
-    cockpit.open_app("phone")
-    press(cockpit, "phone.tab.messages")
-    press(cockpit, "phone.thread.1")
+    press(cockpit, "open phone; phone.tab.messages; phone.thread.1")
     who, text = shown(cockpit, "thread.who"), shown(cockpit, "thread.answer.2")
     assert press(cockpit, "thread.answer.2") is OK
     assert press(cockpit, "thread.answer.2") is OK
@@ -432,8 +381,7 @@ def test_an_answer_goes_out_once_for_each_tap(cockpit: Cockpit) -> None:
 def test_the_keypad_is_locked_while_driving_and_dials_while_parked(make: Make, parked: Cockpit) -> None:
     moving = make()
     for cockpit in (moving, parked):
-        cockpit.open_app("phone")
-        press(cockpit, "phone.tab.keypad")
+        press(cockpit, "open phone; phone.tab.keypad")
     assert press(moving, "phone.key.5") is FeedbackCode.RESTRICTED
     for key in ("phone.key.5", "phone.key.hash", "phone.key.7", "phone.erase", "phone.call_number"):
         assert press(parked, key) is OK
@@ -443,8 +391,7 @@ def test_the_keypad_is_locked_while_driving_and_dials_while_parked(make: Make, p
 def test_favourite_contacts_come_and_go(cockpit: Cockpit) -> None:
     cockpit.open_app("phone")
     name = shown(cockpit, "phone.favourite.0")
-    press(cockpit, "phone.favourite.0")
-    press(cockpit, "contact.favourite")
+    press(cockpit, "phone.favourite.0; contact.favourite")
     assert name not in cockpit.commands()["phone.favourites"]
     press(cockpit, "contact.favourite")
     assert cockpit.commands()["phone.favourites"][-1] == name
@@ -454,9 +401,7 @@ def test_favourite_contacts_come_and_go(cockpit: Cockpit) -> None:
 
 
 def test_parking_is_paid_by_zone_and_time_and_not_twice_by_itself(cockpit: Cockpit) -> None:
-    cockpit.open_app("parking")
-    press(cockpit, "parking.zone.b")
-    press(cockpit, "parking.time.120")
+    press(cockpit, "open parking; parking.zone.b; parking.time.120")
     assert shown(cockpit, "parking.price") == "Price 5.00"
     assert press(cockpit, "parking.pay") is OK
     assert cockpit.commands()["payments"] == [{"zone": "Zone B", "minutes": 120, "price": 5.0}]
@@ -464,8 +409,7 @@ def test_parking_is_paid_by_zone_and_time_and_not_twice_by_itself(cockpit: Cockp
 
 
 def test_a_memo_is_as_long_as_it_was_spoken(cockpit: Cockpit, around: Surroundings) -> None:
-    cockpit.open_app("memo")
-    press(cockpit, "memo.record")
+    press(cockpit, "open memo; memo.record")
     assert cockpit.commands()["apps.recording"]
     driving = replace(around.driving, time_s=around.driving.time_s + 9)
     cockpit.sense(replace(around, driving=driving), 9.0)
@@ -501,9 +445,7 @@ def test_the_trip_computer_counts_from_its_reset(cockpit: Cockpit, around: Surro
 def test_the_cabin_is_prepared_from_half_an_hour_before_the_time_that_was_set(
     cockpit: Cockpit, around: Surroundings
 ) -> None:
-    cockpit.open_app("climate")
-    press(cockpit, "hvac.comfort")
-    press(cockpit, "climate.schedule")
+    press(cockpit, "open climate; hvac.comfort; climate.schedule")
     for _ in range(16):
         press(cockpit, "climate.schedule.later")
     assert cockpit.commands()["climate.schedule"] == "15:00"
@@ -514,13 +456,12 @@ def test_the_cabin_is_prepared_from_half_an_hour_before_the_time_that_was_set(
 
 def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: Surroundings) -> None:
     still = replace(around, driving=replace(around.driving, speed_mps=0.0))
-    parked.open_app("manual")
-    assert press(parked, "manual.film") is FeedbackCode.OK
+    assert press(parked, "open manual; manual.film") is FeedbackCode.OK
     assert parked.commands()["apps.film"] == "Windows are fogged"
     before = parked.screenshot()
     assert not [ink.text for ink in render(parked.tree).inks if ink.cut]
     parked.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 3)), 3.0)
-    picture = next(one for one in parked.elements() if one.resource_id == shown_id("manual.film.picture"))
+    picture = find(parked, "manual.film.picture")
     assert picture.content_description == "The video is at 0:03 of 0:40"
     assert (parked.screenshot() != before).any(), "it moves"
     ended = parked.copy()
@@ -534,14 +475,13 @@ def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: 
         parked.sense(surroundings, 1.0)
         assert parked.commands()["apps.film"] == "", "standing in gear and moving"
         assert press(parked, "manual.film") is FeedbackCode.RESTRICTED
-        button = next(one for one in parked.elements() if one.resource_id == shown_id("manual.film"))
+        button = find(parked, "manual.film")
         assert "Videos play only while parked" in button.content_description
         assert not button.is_enabled
 
 
 def test_the_manual_is_searched_in_its_text(parked: Cockpit) -> None:
-    parked.open_app("manual")
-    press(parked, "manual.search")
+    press(parked, "open manual; manual.search")
     parked.type_text("throttle")
     assert parked.key_enter().code is OK
     assert shown(parked, "manual.title") == "Driving on ice"
@@ -553,29 +493,23 @@ def test_the_manual_is_searched_in_its_text(parked: Cockpit) -> None:
 def test_the_seat_moves_only_at_rest_and_its_memory_brings_it_back(make: Make, parked: Cockpit) -> None:
     moving = make()
     for cockpit in (moving, parked):
-        cockpit.open_app("vehicle")
-        press(cockpit, "vehicle.tab.seats")
+        press(cockpit, "open vehicle; vehicle.tab.seats")
     assert press(moving, "seat.driver.position.increase") is FeedbackCode.RESTRICTED
     assert press(moving, "seat.memory.1") is FeedbackCode.RESTRICTED
     start = parked.signals[SEAT.DRIVER_POSITION]
-    press(parked, "seat.store.1")
-    assert press(parked, "seat.driver.position.increase") is OK
+    assert press(parked, "seat.store.1; seat.driver.position.increase") is OK
     assert press(parked, "seat.memory.1") is OK
     assert parked.signals[SEAT.DRIVER_POSITION] == start
 
 
 def test_a_profile_brings_its_seat_and_temperature(parked: Cockpit) -> None:
-    parked.open_app("settings")
-    press(parked, "settings.page.profiles")
-    assert press(parked, "profile.1") is OK
+    assert press(parked, "open settings; settings.page.profiles; profile.1") is OK
     assert parked.commands()["driver.profile"] == "Driver 2"
     assert parked.signals[HVAC.DRIVER_TEMPERATURE] == 22.5
 
 
 def test_all_doors_and_windows_go_together(cockpit: Cockpit) -> None:
-    cockpit.open_app("vehicle")
-    press(cockpit, "vehicle.tab.doors")
-    press(cockpit, "door.all")
+    press(cockpit, "open vehicle; vehicle.tab.doors; door.all")
     assert not cockpit.signals[CABIN.REAR_LEFT_LOCK]
     press(cockpit, "door.all")
     assert cockpit.signals[CABIN.DRIVER_LOCK]
@@ -598,17 +532,13 @@ def test_all_doors_and_windows_go_together(cockpit: Cockpit) -> None:
 def test_what_is_set_on_the_vehicle_pages_arrives(
     cockpit: Cockpit, tab: str, key: str, signal: Signal[object] | None, value: object
 ) -> None:
-    cockpit.open_app("vehicle")
-    press(cockpit, f"vehicle.tab.{tab}")
-    assert press(cockpit, key) is OK
+    assert press(cockpit, "open vehicle", f"vehicle.tab.{tab}", key) is OK
     if signal is not None:
         assert cockpit.signals[signal] == value
 
 
 def test_the_limiter_and_cruise_control_take_turns_and_tell_the_road(cockpit: Cockpit) -> None:
-    cockpit.open_app("vehicle")
-    press(cockpit, "vehicle.tab.assistance")
-    press(cockpit, "adas.limiter_speed.decrease")
+    press(cockpit, "open vehicle; vehicle.tab.assistance; adas.limiter_speed.decrease")
     for key in ("adas.limiter", "adas.cruise", "adas.limiter", "adas.limiter"):
         press(cockpit, key)
     assert cockpit.drain_requests() == (Cruise(45.0), Cruise(50.0), Cruise(45.0), Cruise(None))
@@ -620,8 +550,7 @@ def test_horn_and_washer_are_counted_and_the_tank_runs_dry(cockpit: Cockpit, aro
         assert press(cockpit, "wiper.wash") is OK
     assert cockpit.signals[BODY.WASHER_FLUID] == pytest.approx(0.0)
     assert press(cockpit, "wiper.wash") is FeedbackCode.REFUSED
-    press(cockpit, "vehicle.tab.driving")
-    press(cockpit, "drive.horn")
+    press(cockpit, "vehicle.tab.driving; drive.horn")
     assert cockpit.signals[DRIVE.HORN]
     cockpit.sense(around, 1.0)
     assert not cockpit.signals[DRIVE.HORN]
@@ -644,24 +573,16 @@ def test_places_on_the_way_come_before_those_far_beside_it(cockpit: Cockpit, aro
 
     state = cockpit._state
     atlas, roads = state.of(places.Gazetteer), state.roads
-    cockpit.open_app("map")
-    press(cockpit, "map.route")
-    press(cockpit, "route.tab.ways")
+    press(cockpit, "open map; map.route; route.tab.ways")
     shown_first = [detour(shown(cockpit, f"route.way.{at}")) for at in (1, 2, 3)]
     assert shown_first == sorted(detour(place.name) for place in atlas.of(places.PlaceKind.CHARGING))[:3]
 
 
 def test_no_music_from_a_phone_that_is_not_linked(cockpit: Cockpit) -> None:
-    cockpit.open_app("media")
-    press(cockpit, "media.play")
-    cockpit.open_app("settings")
-    press(cockpit, "settings.page.connections")
-    press(cockpit, "link.bluetooth")
+    press(cockpit, "open media; media.play; open settings; settings.page.connections; link.bluetooth")
     assert cockpit.signals[MEDIA.ACTION] == "STOP"
-    cockpit.open_app("media")
-    assert press(cockpit, "media.entry.4") is FeedbackCode.REFUSED
-    press(cockpit, "media.source.fm")
-    assert press(cockpit, "media.entry.1") is OK
+    assert press(cockpit, "open media; media.entry.4") is FeedbackCode.REFUSED
+    assert press(cockpit, "media.source.fm; media.entry.1") is OK
     assert cockpit.signals[MEDIA.ACTION] == "PLAY"
 
 

@@ -12,26 +12,14 @@ from automotive_cosim.cockpit.apps.phone.state import TEMPLATES
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import CALL, LINK, difference
-from automotive_cosim.contracts import Connectivity, Element, FeedbackCode, Surroundings
+from automotive_cosim.contracts import Connectivity, FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import key_of
-from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import UserError
+from tests.cockpit.fingers import find, press
 
 Make = Callable[..., Cockpit]
 WHO = "Ada Adler"
 OFFLINE = Connectivity(False, "none", 0)
-
-
-def element(cockpit: Cockpit, key: str) -> Element:
-    return next(element for element in cockpit.elements() if element.resource_id == shown_id(key))
-
-
-def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
-    code = FeedbackCode.OK
-    for key in keys:
-        box = element(cockpit, key).bbox_pixels
-        code = cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
-    return code
 
 
 def keys(cockpit: Cockpit) -> set[str]:
@@ -59,7 +47,7 @@ def test_a_call_rings_on_every_screen_and_nothing_else_moves(ringing: Cockpit) -
     assert ringing.signals[CALL.RINGING] == WHO
     for screen in pages():
         ringing.visit(screen)
-        assert element(ringing, "call.incoming").text == WHO
+        assert find(ringing, "call.incoming").text == WHO
         assert {"call.answer", "call.decline", "call.reply"} <= keys(ringing)
 
 
@@ -72,11 +60,10 @@ def test_a_call_is_answered_and_ended(ringing: Cockpit) -> None:
     }
     assert (ringing.signals[CALL.RINGING], ringing.signals[CALL.PARTNER]) == ("", WHO)
     assert "call.answer" not in keys(ringing)
-    ringing.open_app("phone")
-    press(ringing, "call.end")
+    press(ringing, "open phone; call.end")
     assert ringing.signals[CALL.PARTNER] == ""
     press(ringing, "phone.tab.recents")
-    assert "Incoming" in element(ringing, "phone.recent.0").content_description
+    assert "Incoming" in find(ringing, "phone.recent.0").content_description
 
 
 def test_a_call_is_declined(ringing: Cockpit) -> None:
@@ -99,7 +86,7 @@ def test_a_call_that_nobody_answers_is_missed(ringing: Cockpit, around: Surround
     assert ringing.signals[CALL.RINGING] == WHO
     drive(ringing, around, 10 + RINGS_S - 1, 10 + RINGS_S)
     assert ringing.signals[CALL.RINGING] == ""
-    assert element(ringing, "status.notice").text == f"Missed call from {WHO}"
+    assert find(ringing, "status.notice").text == f"Missed call from {WHO}"
     assert difference(before, ringing.commands()) == {}
     assert press(ringing, "status.notice") is FeedbackCode.OK
     assert ringing.screen == "contact"
@@ -120,18 +107,17 @@ def test_a_message_is_told_read_out_and_answered(make: Make, around: Surrounding
     unread = cockpit.signals[CALL.UNREAD]
     drive(cockpit, around, 0, 5)
     assert cockpit.signals[CALL.UNREAD] == unread + 1
-    assert element(cockpit, "status.notice").text == f"New message from {WHO}"
+    assert find(cockpit, "status.notice").text == f"New message from {WHO}"
     assert press(cockpit, "status.notice") is FeedbackCode.OK
-    assert (cockpit.screen, element(cockpit, "thread.who").text) == ("thread", WHO)
+    assert (cockpit.screen, find(cockpit, "thread.who").text) == ("thread", WHO)
     assert "The gate is open." not in " ".join(one.content_description for one in cockpit.elements())
-    box = element(cockpit, "thread.read").bbox_pixels
+    box = find(cockpit, "thread.read").bbox_pixels
     assert "The gate is open." in cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).text
     assert cockpit.signals[CALL.UNREAD] == unread
     press(cockpit, "thread.answer.3")
     assert cockpit.commands()["messages.sent"] == [{"to": WHO, "text": TEMPLATES[3]}]
-    cockpit.open_app("phone")
-    press(cockpit, "phone.tab.messages")
-    assert element(cockpit, "phone.thread.0").text == WHO
+    press(cockpit, "open phone; phone.tab.messages")
+    assert find(cockpit, "phone.thread.0").text == WHO
 
 
 def test_a_message_can_be_read_on_screen_at_a_standstill(make: Make, around: Surroundings) -> None:
@@ -144,8 +130,7 @@ def test_a_message_can_be_read_on_screen_at_a_standstill(make: Make, around: Sur
 
 def test_do_not_disturb_keeps_calls_and_messages_silent(make: Make, around: Surroundings) -> None:
     cockpit = make(arrivals=[Arrival("call", 2.0, WHO), Arrival("message", 3.0, WHO, "Hello")])
-    cockpit.open_app("phone")
-    press(cockpit, "phone.do_not_disturb")
+    press(cockpit, "open phone; phone.do_not_disturb")
     drive(cockpit, around, 0, 3)
     assert not keys(cockpit) & {"call.incoming", "status.notice"}
     assert cockpit.signals[CALL.RINGING] == ""
@@ -208,15 +193,12 @@ def test_a_search_survives_a_call(make: Callable[..., Cockpit], around: Surround
     """And is gone after any other way off the screen."""
     still = replace(around, driving=replace(around.driving, speed_mps=0.0))
     cockpit = make(surroundings=still, arrivals=[Arrival("call", 5.0, "Tilda Lindqvist")])
-    cockpit.open_app("map")
-    press(cockpit, "map.search")
+    press(cockpit, "open map; map.search")
     cockpit.type_text("rue")
     cockpit.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 6.0)), 6.0)
     press(cockpit, "call.reply")
     assert cockpit.screen == "thread"
     cockpit.back()
-    assert (cockpit.screen, element(cockpit, "map.search").text) == ("map", "rue")
-    press(cockpit, "call.decline")
-    cockpit.open_app("media")
-    cockpit.open_app("map")
-    assert element(cockpit, "map.search").text == ""
+    assert (cockpit.screen, find(cockpit, "map.search").text) == ("map", "rue")
+    press(cockpit, "call.decline; open media; open map")
+    assert find(cockpit, "map.search").text == ""

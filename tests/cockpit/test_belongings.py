@@ -16,8 +16,8 @@ from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import CABIN, HMI, LINK
 from automotive_cosim.contracts import FeedbackCode
-from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import UnknownNameError, UserError
+from tests.cockpit.fingers import press, shown
 
 from .conftest import outside, town
 
@@ -45,14 +45,7 @@ def pass_s(cockpit: Cockpit, seconds: int, since_s: float = 900.0) -> float:
 
 def tap(cockpit: Cockpit, *keys: str) -> None:
     for key in keys:
-        element = next(each for each in cockpit.elements() if each.resource_id == shown_id(key))
-        box = element.bbox_pixels
-        told = cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2)
-        assert told.code is FeedbackCode.OK, (key, told)
-
-
-def shown(cockpit: Cockpit, key: str) -> str:
-    return next(each.text for each in cockpit.elements() if each.resource_id == shown_id(key))
+        assert press(cockpit, key) is FeedbackCode.OK, key
 
 
 def test_what_is_brought_is_there_and_the_rest_is_what_is_drawn():

@@ -36,20 +36,10 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import SignalError, UnknownNameError
 from automotive_cosim.interface import spaces
-
-from .conftest import middle
+from tests.cockpit.fingers import find, middle, press, shown
 
 Make = Callable[..., Cockpit]
 OK, NO_EFFECT = FeedbackCode.OK, FeedbackCode.NO_EFFECT
-
-
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
-    return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
-
-
-def shown(cockpit: Cockpit, key: str) -> str:
-    return next((element.text for element in cockpit.elements() if element.resource_id == shown_id(key)), "")
 
 
 def at_rest(surroundings: Surroundings) -> Surroundings:
@@ -156,11 +146,9 @@ def test_messages_opens_the_messages_of_the_phone(cockpit: Cockpit) -> None:
 def test_an_app_opens_once_it_is_installed_which_is_done_while_parked(make: Make, around: Surroundings) -> None:
     moving = make()
     assert moving.open_app("calendar").code is FeedbackCode.REFUSED
-    moving.open_app("store")
-    assert press(moving, "store.calendar") is FeedbackCode.RESTRICTED
+    assert press(moving, "open store; store.calendar") is FeedbackCode.RESTRICTED
     parked = make(surroundings=at_rest(around), signals={MOTION.GEAR.path: "P"})
-    parked.open_app("store")
-    assert press(parked, "store.calendar") is OK
+    assert press(parked, "open store; store.calendar") is OK
     assert "calendar" in parked.commands()["apps.installed"]
     assert parked.open_app("calendar").code is OK
 
@@ -225,14 +213,12 @@ def test_a_double_tap_comes_closer_on_the_map(cockpit: Cockpit) -> None:
 
 def test_typing_is_locked_while_moving_and_open_when_parked(make: Make, around: Surroundings) -> None:
     moving = make()
-    moving.open_app("map")
-    assert press(moving, "map.search") is FeedbackCode.RESTRICTED
+    assert press(moving, "open map; map.search") is FeedbackCode.RESTRICTED
     assert moving.type_text("Rue").code is not OK
     assert moving.key_enter().code is FeedbackCode.RESTRICTED
     standing = make(surroundings=at_rest(around))
     assert standing.type_text("Rue").code is FeedbackCode.NO_SUCH_ELEMENT
-    standing.open_app("map")
-    assert press(standing, "map.search") is OK
+    assert press(standing, "open map; map.search") is OK
     assert standing.type_text("pont").code is OK
     assert "Pont Neuf" in {element.text for element in standing.elements()}
     assert standing.key_enter().code is OK
@@ -241,8 +227,7 @@ def test_typing_is_locked_while_moving_and_open_when_parked(make: Make, around: 
 
 def test_a_search_begun_at_the_light_is_locked_when_the_car_drives_on(make: Make, around: Surroundings) -> None:
     cockpit = make(surroundings=at_rest(around))
-    cockpit.open_app("map")
-    press(cockpit, "map.search")
+    press(cockpit, "open map; map.search")
     cockpit.sense(around, 1.0)
     assert cockpit.type_text("Rue").code is not OK
 
@@ -252,11 +237,8 @@ def test_a_search_begun_at_the_light_is_locked_when_the_car_drives_on(make: Make
 
 def test_the_button_and_the_call_give_the_same_alert(make: Make) -> None:
     by_hand, by_call = make(), make()
-    by_hand.open_app("safety")
-    assert press(by_hand, "safety.warn") is FeedbackCode.DISABLED
-    press(by_hand, "safety.kind.distance")
-    press(by_hand, "safety.severity.critical")
-    assert press(by_hand, "safety.warn") is OK
+    assert press(by_hand, "open safety; safety.warn") is FeedbackCode.DISABLED
+    assert press(by_hand, "safety.kind.distance; safety.severity.critical; safety.warn") is OK
     by_call.alert(Alert(AlertKind.DISTANCE, Severity.CRITICAL))
     assert by_hand.drain_requests() == by_call.drain_requests() == (Alert(AlertKind.DISTANCE, Severity.CRITICAL),)
     assert by_hand.commands() == by_call.commands()
@@ -264,13 +246,11 @@ def test_the_button_and_the_call_give_the_same_alert(make: Make) -> None:
 
 
 def test_an_advised_speed_starts_from_the_sign_and_can_be_left_to_it(cockpit: Cockpit) -> None:
-    cockpit.open_app("safety")
-    press(cockpit, "safety.kind.speed")
-    press(cockpit, "safety.speed.decrease")
-    press(cockpit, "safety.speed.decrease")
-    press(cockpit, "safety.warn")
-    press(cockpit, "safety.kind.speed")
-    press(cockpit, "safety.warn")
+    press(
+        cockpit,
+        "open safety; safety.kind.speed; safety.speed.decrease; safety.speed.decrease; safety.warn",
+        "safety.kind.speed; safety.warn",
+    )
     assert cockpit.drain_requests() == (Alert(AlertKind.SPEED, speed_kmh=40.0), Alert(AlertKind.SPEED))
 
 
@@ -285,7 +265,7 @@ def test_an_alert_shows_for_a_while_and_the_history_keeps_the_road_s_answer(
     cockpit.sense(later, 60.0)
     assert shown(cockpit, "status.notice") == ""
     cockpit.open_app("safety")
-    entry = next(element for element in cockpit.elements() if element.resource_id == shown_id("safety.history.0"))
+    entry = find(cockpit, "safety.history.0")
     assert "The driver slows down" in entry.content_description
     assert cockpit.commands()["alerts"] == [
         {"kind": "speed", "severity": "warning", "text": "Mind the limit", "speed_kmh": None}
@@ -304,19 +284,16 @@ def test_senseless_speeds_are_refused(cockpit: Cockpit) -> None:
 def test_hazards_and_cruise_tell_the_road(cockpit: Cockpit) -> None:
     assert cockpit.hazards(True).code is OK
     assert cockpit.hazards(True).code is NO_EFFECT
-    cockpit.open_app("vehicle")
-    press(cockpit, "lights.hazard")
-    press(cockpit, "vehicle.tab.assistance")
-    press(cockpit, "adas.cruise")
-    press(cockpit, "adas.cruise_speed.increase")
-    press(cockpit, "adas.cruise")
+    press(
+        cockpit,
+        "open vehicle; lights.hazard; vehicle.tab.assistance; adas.cruise; adas.cruise_speed.increase",
+        "adas.cruise",
+    )
     assert cockpit.drain_requests() == (Hazards(True), Hazards(False), Cruise(50.0), Cruise(55.0), Cruise(None))
 
 
 def test_a_refused_cruise_goes_off_and_says_why(cockpit: Cockpit) -> None:
-    cockpit.open_app("vehicle")
-    press(cockpit, "vehicle.tab.assistance")
-    press(cockpit, "adas.cruise")
+    press(cockpit, "open vehicle; vehicle.tab.assistance; adas.cruise")
     (request,) = cockpit.drain_requests()
     cockpit.answered(request, Answer(False, "too slow for cruise control"))
     assert not cockpit.signals[ADAS.CRUISE_ACTIVE]
@@ -325,11 +302,9 @@ def test_a_refused_cruise_goes_off_and_says_why(cockpit: Cockpit) -> None:
 
 def test_slowing_down_needs_a_speed(make: Make) -> None:
     blind = make(sign_camera=False)
-    blind.open_app("safety")
-    assert press(blind, "safety.slow_down") is FeedbackCode.REFUSED
+    assert press(blind, "open safety; safety.slow_down") is FeedbackCode.REFUSED
     seeing = make()
-    seeing.open_app("safety")
-    assert press(seeing, "safety.slow_down") is OK
+    assert press(seeing, "open safety; safety.slow_down") is OK
     assert press(seeing, "safety.pull_over") is OK
     assert seeing.drain_requests() == (SlowDown(50.0), PullOver())
 
@@ -349,14 +324,11 @@ def test_a_destination_counts_once_the_road_accepts_it(cockpit: Cockpit) -> None
 
 
 def test_an_emergency_call_asks_once_more_and_cannot_be_taken_back(cockpit: Cockpit) -> None:
-    cockpit.open_app("safety")
-    press(cockpit, "safety.emergency_call")
+    press(cockpit, "open safety; safety.emergency_call")
     assert cockpit.commands()["calls"] == []
     press(cockpit, "emergency.cancel")
     assert cockpit.screen == "safety"
-    press(cockpit, "safety.emergency_call")
-    press(cockpit, "emergency.call")
-    cockpit.back()
+    press(cockpit, "safety.emergency_call; emergency.call; back")
     assert cockpit.commands()["calls"] == ["emergency"]
 
 
@@ -380,9 +352,7 @@ def test_music_plays_skips_and_follows_its_source(cockpit: Cockpit, around: Surr
 
 
 def test_units_are_those_chosen(cockpit: Cockpit) -> None:
-    cockpit.open_app("settings")
-    press(cockpit, "settings.distance.miles")
-    press(cockpit, "settings.temperature.fahrenheit")
+    press(cockpit, "open settings; settings.distance.miles; settings.temperature.fahrenheit")
     assert shown(cockpit, "status.speed") == "30"
     assert shown(cockpit, "status.speed_unit") == "mph"
     assert shown(cockpit, "status.limit_sign") == "50", "a sign keeps its own figure"
@@ -420,8 +390,7 @@ def test_copies_are_independent(cockpit: Cockpit, around: Surroundings) -> None:
     before = (cockpit.commands(), cockpit.elements(), cockpit.screenshot().tobytes())
     twin = cockpit.copy()
     assert (twin.commands(), twin.elements(), twin.screenshot().tobytes()) == before
-    twin.open_app("climate")
-    press(twin, "hvac.front_defroster")
+    press(twin, "open climate; hvac.front_defroster")
     twin.alert(Alert(AlertKind.SPEED))
     twin.emergency_call()
     twin.sense(at_rest(around), 30.0)

@@ -31,10 +31,10 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
-from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.episode.episode import counterfactual, replayed
+from tests.cockpit.fingers import middle, press
 
-from .conftest import View, middle, outside
+from .conftest import View, outside
 
 ACCEPTED = Answer(True, "so it is")
 
@@ -172,10 +172,6 @@ def test_everything_done_again_commands_the_same(drive: Drive, seed: int) -> Non
     assert drive.cockpit.given
 
 
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    return cockpit.tap(*middle(next(each for each in cockpit.elements() if each.resource_id == shown_id(key)))).code
-
-
 # --- laws over all commands -----------------------------------------------------------------------------------
 
 ELSEWHERE = {"Ask", "AskDriver", "Pan"}
@@ -223,8 +219,7 @@ def everywhere(walker: Callable[[Cockpit], tuple[View, ...]], network: RoadNetwo
     warned.alert(Alert(AlertKind.SPEED, Severity.WARNING))
     ringing.sense(outside(902.0, speed_kmh=0.0), 2.0)
     talking = ringing.copy()
-    press(talking, "call.answer")
-    talking.open_app("phone")
+    press(talking, "call.answer; open phone")
     also = tuple(
         View(name, (), there) for name, there in (("warned", warned), ("ringing", ringing), ("talking", talking))
     )

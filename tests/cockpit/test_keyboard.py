@@ -11,21 +11,9 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import Element, FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import key_of
-from automotive_cosim.contracts.ids import resource_id as shown_id
+from tests.cockpit.fingers import find, press
 
 FIELDS = {"map": "map.search", "media": "media.search", "manual": "manual.search"}
-
-
-def find(cockpit: Cockpit, key: str) -> Element:
-    return next(element for element in cockpit.elements() if element.resource_id == shown_id(key))
-
-
-def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
-    code = FeedbackCode.OK
-    for key in keys:
-        box = find(cockpit, key).bbox_pixels
-        code = cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
-    return code
 
 
 def has_keys(cockpit: Cockpit) -> bool:

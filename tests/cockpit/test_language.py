@@ -29,8 +29,8 @@ from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.theme import Weight, face
 from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import Answer, Feedback, FeedbackCode, Surroundings
-from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.contracts.text import Quantity, Text, counted, joined, listed, say, say_in
+from tests.cockpit.fingers import find, press
 
 from . import catalogues
 
@@ -120,11 +120,6 @@ IDENTIFIER = re.compile(r"#?[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)*")
 def texts(widget: Widget) -> Iterator[str]:
     for one in widget.walk():
         yield from (getattr(one, name) for name in TEXTS if getattr(one, name, ""))
-
-
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
-    return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
 @pytest.fixture(scope="module")
@@ -327,7 +322,7 @@ def test_what_was_typed_stays(make: Make, around: Surroundings) -> None:
     cockpit.visit("map")
     press(cockpit, "map.search")
     cockpit.type_text("Home")
-    field = next(element for element in cockpit.elements() if element.resource_id == shown_id("map.search"))
+    field = find(cockpit, "map.search")
     assert (field.text, field.hint_text) == ("Home", "Où aller\u202f?")
 
 
@@ -335,8 +330,5 @@ def test_the_language_is_chosen_in_the_settings(make: Make) -> None:
     cockpit = make()
     cockpit.visit("language")
     assert press(cockpit, "language.de") is FeedbackCode.OK
-    assert (
-        next(element for element in cockpit.elements() if element.resource_id == shown_id("dock.phone")).text
-        == "Telefon"
-    )
+    assert find(cockpit, "dock.phone").text == "Telefon"
     assert cockpit.open_app("phone").code is FeedbackCode.OK

@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Element, Road, RoadNetwork, Surroundings
-from automotive_cosim.contracts.ids import resource_id as shown_id
+from tests.cockpit.fingers import find
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def british(network: RoadNetwork, around: Surroundings) -> Cockpit:
 
 
 def box(cockpit: Cockpit, key: str) -> tuple[int, int]:
-    found = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
+    found = find(cockpit, key).bbox_pixels
     return found.x_min, found.x_max
 
 

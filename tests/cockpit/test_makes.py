@@ -16,12 +16,13 @@ from automotive_cosim.cockpit.registry import apps, apps_in
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import FeedbackCode, RoadNetwork
 from automotive_cosim.contracts.given import CarMake
-from automotive_cosim.contracts.ids import key_of, resource_id
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import parse
+from tests.cockpit.fingers import find, middle
 from tests.laws import over
 
-from .conftest import middle, outside
+from .conftest import outside
 
 MAKES = [name for name in CarMake if name not in (CarMake.HOME, CarMake.DRAWN)]
 FOLDER = files("automotive_cosim.cockpit").joinpath("makes")
@@ -46,7 +47,7 @@ def test_the_way_to_every_screen_leads_there(name: CarMake, network: RoadNetwork
     for screen in {*apps(), *tree.SUBPAGES, *make.screens} - {app.name for app in apps_in(Where.STORE)}:
         cockpit = start.copy()
         for key in tree.way(make, screen):
-            found = next(one for one in cockpit.elements() if one.resource_id == resource_id(key))
+            found = find(cockpit, key)
             assert cockpit.tap(*middle(found)).code in (FeedbackCode.OK, FeedbackCode.NO_EFFECT), (screen, key)
         assert cockpit.screen == screen
 
@@ -113,7 +114,9 @@ def test_a_shelf_shows_what_there_is_of_any_part_of_any_screen(network: RoadNetw
         ("media", "media"),
     ):
         place = OwnScreen(("a", "b", "c", "d"), "SEAT", shelves=(Shelf(of, ((control,),)),))
-        cockpit.fit(ScreenSize.STANDARD, Make(BarOfMake(entries=("home", "apps", "own")), screens={"own": place}))
+        cockpit.resize(
+            ScreenSize.STANDARD, Make(BarOfMake(entries=("home", "apps", "own")), screens={"own": place})
+        )
         assert cockpit.visit("own").code is FeedbackCode.OK
         shown = {key_of(one.resource_id) for one in cockpit.elements()}
         assert any(f"{key}.".startswith(f"{control}.") for key in shown) is (of in ("seats", "media")), control

@@ -34,6 +34,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
+from tests.cockpit.fingers import press
 
 from .conftest import town
 
@@ -42,11 +43,6 @@ Make = Callable[..., Cockpit]
 
 def view(cockpit: Cockpit) -> MapView:
     return next(widget for widget in cockpit.tree.walk() if isinstance(widget, MapView))
-
-
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
-    return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
 def test_a_swipe_moves_the_map_and_a_button_brings_it_back(cockpit: Cockpit) -> None:
@@ -268,9 +264,7 @@ def test_every_place_is_reached_while_driving_by_a_short_way(cockpit: Cockpit) -
         look_through("explore.place.")
         press(cockpit, "explore.back")
     assert set(cockpit.content["places"]) <= set(found)
-    cockpit.open_app("home")
-    press(cockpit, "home.map")
+    press(cockpit, "open home; home.map")
     while cockpit.scroll("map.places", Direction.UP).code is FeedbackCode.OK:
         pass
-    press(cockpit, "map.place.0")
-    assert press(cockpit, "place.start") is FeedbackCode.OK
+    assert press(cockpit, "map.place.0; place.start") is FeedbackCode.OK

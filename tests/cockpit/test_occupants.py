@@ -27,8 +27,8 @@ from automotive_cosim.cockpit.signals import HVAC, MOTION, OUTSIDE, SEAT, Signal
 from automotive_cosim.cockpit.vehicle import WINDOWS, Vehicle
 from automotive_cosim.contracts import FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import key_of
-from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import SignalError, UserError
+from tests.cockpit.fingers import find
 
 Make = Callable[..., Cockpit]
 BEHIND = (Seat.PASSENGER, Seat.REAR_LEFT, Seat.REAR_MIDDLE, Seat.REAR_RIGHT)
@@ -154,7 +154,7 @@ def test_the_signal_of_the_forecast_follows_the_switch_and_home_shows_it_when_pa
     still = replace(hot, driving=replace(hot.driving, speed_mps=0.0))
     cockpit = make(surroundings=still, signals={MOTION.GEAR.path: "P"})
     left = cockpit.signals[HVAC.FORECAST]
-    note = next(one.text for one in cockpit.elements() if one.resource_id == shown_id("home.cabin_note"))
+    note = find(cockpit, "home.cabin_note").text
     assert note == f"If you leave: {left:.0f} °C"
     assert left > 40.0
     cockpit.command(HVAC.KEPT, True)

@@ -10,11 +10,12 @@ from automotive_cosim.cockpit.camera import camera, scene
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.covers import cover
 from automotive_cosim.contracts import Element, OtherVehicle, Surroundings
-from automotive_cosim.contracts.ids import key_of, resource_id
+from automotive_cosim.contracts.ids import key_of
+from tests.cockpit.fingers import find
 
 
 def found(cockpit: Cockpit, key: str) -> Element:
-    return next(each for each in cockpit.elements() if each.resource_id == resource_id(key))
+    return find(cockpit, key)
 
 
 def test_a_cover_is_made_from_the_name_alone() -> None:

@@ -34,7 +34,6 @@ from automotive_cosim.contracts import (
     Answer,
     Connectivity,
     Direction,
-    Element,
     FeedbackCode,
     GpsFix,
     Reroute,
@@ -46,20 +45,11 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
+from tests.cockpit.fingers import find, middle, press
 from tests.laws import hold, over
 
 Make = Callable[..., Cockpit]
 DOES = (FeedbackCode.OK, FeedbackCode.READ_OUT, FeedbackCode.REFUSED)
-
-
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    element = next(element for element in cockpit.elements() if element.resource_id == shown_id(key))
-    return cockpit.tap(*middle(element)).code
-
-
-def middle(element: Element) -> tuple[int, int]:
-    box = element.bbox_pixels
-    return (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
 
 
 def busy(cockpit: Cockpit) -> Cockpit:
@@ -420,7 +410,7 @@ def test_long_lists_end_early_while_driving(around: Surroundings, views: Any) ->
                 continue
             cut.add(rows.key)
             assert len(seen) == 21 + 1
-            last = next(one for one in cockpit.elements() if one.resource_id == shown_id(f"{rows.key}.rest"))
+            last = find(cockpit, f"{rows.key}.rest")
             assert not last.is_enabled
             assert "while driving" in last.content_description
             assert press(cockpit, f"{rows.key}.rest") is FeedbackCode.RESTRICTED
@@ -464,7 +454,7 @@ def test_a_screen_of_any_size_has_its_pixels(network: RoadNetwork, around: Surro
     cockpit = Cockpit(network, rng=np.random.default_rng(1))
     cockpit.sense(around, 0.0)
     cockpit.screenshot()
-    cockpit.fit(size)
+    cockpit.resize(size)
     assert cockpit.screenshot().shape == (size.height, size.width, 3)
     assert press(cockpit, "dock.climate") is FeedbackCode.OK
     repainted = cockpit.screenshot()

@@ -15,6 +15,7 @@ from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, HMI, LIGHTS, O
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind, Telltale, sign_picture, symbol
 from automotive_cosim.contracts import Element, Limit, LimitSource, Surroundings
 from automotive_cosim.contracts.ids import key_of
+from tests.cockpit.fingers import find
 
 from .conftest import View
 
@@ -80,7 +81,7 @@ def test_the_last_sign_is_the_one_passed_last(make: Callable[..., Cockpit], arou
     for road, sign in drive:
         cockpit.sense(replace(around, driving=replace(around.driving, road=road)), 1.0)
         assert cockpit._state.last_sign == sign
-        seen.append(next(e.content_description for e in cockpit.elements() if key_of(e.resource_id) == "home.sign"))
+        seen.append(find(cockpit, "home.sign").content_description)
     words = ("Tunnel", "Tunnel", "Limit sign 30", "End of limit", "School zone")
     assert seen == [f"Last sign: {word}" for word in words]
 

@@ -9,9 +9,9 @@ import pytest
 from automotive_cosim.cockpit.apps.timer import MOST_MIN, STEP_MIN
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import FeedbackCode
-from automotive_cosim.contracts.ids import resource_id
+from tests.cockpit.fingers import press, shown
 
-from .conftest import middle, outside
+from .conftest import outside
 
 Make = Callable[..., Cockpit]
 
@@ -21,15 +21,6 @@ def timer(make: Make) -> Cockpit:
     cockpit = make()
     cockpit.visit("timer")
     return cockpit
-
-
-def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    element = next(each for each in cockpit.elements() if each.resource_id == resource_id(key))
-    return cockpit.tap(*middle(element)).code
-
-
-def shown(cockpit: Cockpit, key: str) -> str:
-    return next(each.text for each in cockpit.elements() if each.resource_id == resource_id(key))
 
 
 def test_it_has_to_be_installed_first(make: Make) -> None:

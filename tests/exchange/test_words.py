@@ -13,7 +13,7 @@ import sumolib
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import CARRIED, DIFFERENT, REFUSED, Catalogs, _copied, table
 from automotive_cosim.exchange.incoming import import_openscenario, road_network, scenario_text
-from automotive_cosim.exchange.places import RoadPlaces
+from automotive_cosim.exchange.positions import RoadPositions
 from automotive_cosim.exchange.storyboard import read_story
 from automotive_cosim.exchange.tree import XmlElement, read_tree
 from automotive_cosim.scenarios import load, open_scenario
@@ -242,7 +242,7 @@ class WordsSample(NamedTuple):
     """A file in which everything is that is carried out, and its road."""
 
     file: Path
-    places: RoadPlaces
+    places: RoadPositions
 
     def tree(self):
         """The whole file."""
@@ -254,7 +254,7 @@ class WordsSample(NamedTuple):
         if root is not None:
             self.file.write_text(written(root), "utf-8")
         story = read_story(self.file, "ego")
-        places = RoadPlaces(self.places.net, self.file.parent / "road.xodr")
+        places = RoadPositions(self.places.net, self.file.parent / "road.xodr")
         return f"{story.road}\n" + scenario_text("x", self.file, story, places, "FR", has_place=False)
 
 
@@ -273,7 +273,7 @@ def sample(tmp_path_factory):
     (folder / "road.xodr").write_text(road(section(0)), "utf-8")
     (folder / "all.xosc").write_text(FILE, "utf-8")
     net = road_network(folder / "road.xodr", folder / "Route")
-    return WordsSample(folder / "all.xosc", RoadPlaces(net, folder / "road.xodr"))
+    return WordsSample(folder / "all.xosc", RoadPositions(net, folder / "road.xodr"))
 
 
 def walk(element):

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import re
-import tomllib
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
-from importlib.resources import files
-from pathlib import Path
 from zoneinfo import ZoneInfo
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from automotive_cosim.contracts import DrivingState, GpsFix, Limit, LimitSource, Weather
@@ -20,8 +15,6 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import Atlas
-from automotive_cosim.geo.rulefile import read_jurisdiction
-from automotive_cosim.geo.rules import TOPICS
 from automotive_cosim.geo.text import BUDGET_TOKENS
 
 ZONES = ("UTC", "Europe/Paris", "America/St_Johns", "Asia/Kathmandu", "Pacific/Apia", "Antarctica/Troll")
@@ -120,85 +113,3 @@ def test_the_two_half_past_twos_of_autumn_differ_by_an_hour_of_sun(locate: Calla
     suns = [locate(48.87, 2.3, time=first.replace(fold=fold)).sun for fold in (0, 1)]
     assert all(suns)
     assert suns[0] != suns[1]
-
-
-# --- rule files ---------------------------------------------------------------------------------------------
-
-SHIPPED = sorted(Path(str(files("automotive_cosim.geo.data"))).glob("*.toml"))
-
-
-@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(data=st.data())
-def test_a_damaged_file_is_refused_with_one_line_or_still_well_formed(tmp_path: Path, data: st.DataObject) -> None:
-    """A line lost, doubled or overwritten in a shipped file."""
-    source = data.draw(st.sampled_from(SHIPPED))
-    lines = source.read_text(encoding="utf-8").splitlines()
-    index = data.draw(st.integers(0, len(lines) - 1))
-    junk = data.draw(
-        st.sampled_from(["", lines[index], "value = []", "when = 3", "cases = 7", "rules = 1", "x = nan"])
-    )
-    lines[index : index + 1] = [junk, junk] if junk == lines[index] else [junk]
-    path = tmp_path / source.name
-    path.write_text("\n".join(lines), encoding="utf-8")
-    try:
-        read_jurisdiction(path)
-    except UserError as error:
-        assert all(line.startswith(str(path)) for line in str(error).splitlines())
-
-
-FIELDS = ("id", "topic", "text", "value", "unit", "when", "law", "as_of", "status", "cases", "binds", "caps")
-_words = st.text(st.characters(codec="ascii"), max_size=6)
-_toml = st.recursive(
-    st.none() | st.booleans() | st.integers(-9, 99) | st.floats() | _words,
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(_words, inner, max_size=3),
-    max_leaves=6,
-)
-
-
-@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(field=st.sampled_from(FIELDS), value=_toml)
-@pytest.mark.slow
-def test_any_value_in_any_field_of_a_rule_is_read_or_refused(tmp_path: Path, field: str, value: object) -> None:
-    rule = {
-        "id": '"XX.limit"',
-        "topic": '"limit"',
-        "text": '"everywhere"',
-        "value": "30",
-        "unit": '"mph"',
-        "law": '"Act 1"',
-        "as_of": "2026-01-01",
-        "status": '"verified"',
-    } | {field: _inline(value)}
-    head = (
-        '[jurisdiction]\ncode = "XX"\nname = "Nowhere"\nstatus = "knowledge"\ndriving_side = "left"\n'
-        'speed_unit = "mph"\ntemperature_unit = "C"\nemergency = ["1"]\n\n[[rules]]\n'
-    )
-    text = head + "\n".join(f"{name} = {entry}" for name, entry in rule.items())
-    tomllib.loads(text)
-    path = tmp_path / "XX.toml"
-    path.write_text(text, encoding="utf-8")
-    try:
-        (rule_read,) = read_jurisdiction(path).rules
-        assert rule_read.topic in TOPICS
-        assert rule_read.text.isprintable()
-        assert rule_read.cases
-    except UserError as error:
-        line = rf"{re.escape(str(path))}( line \d+ \[\[rules\]\]|: and \d+ more$)"
-        assert all(re.match(line, problem) for problem in str(error).splitlines())
-
-
-def _inline(value: object) -> str:
-    match value:
-        case None:
-            return "1979-05-27T07:32:00"
-        case bool() | int():
-            return json.dumps(value)
-        case float():
-            return {"Infinity": "inf", "-Infinity": "-inf", "NaN": "nan"}.get(json.dumps(value), f"{value:.6f}")
-        case str():
-            return json.dumps(value).replace("\x7f", "?")
-        case list():
-            return f"[{', '.join(map(_inline, value))}]"
-        case dict():
-            return f"{{{', '.join(f'{_inline(str(name))} = {_inline(entry)}' for name, entry in value.items())}}}"
-    raise TypeError

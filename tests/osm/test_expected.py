@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from automotive_cosim.osm import access, barriers, expected, limits, oneway, turns
+from automotive_cosim.osm import access, barriers, expected, oneway, speed_limits, turns
 from automotive_cosim.osm.access import CLOSED, KEYS, OPEN
 from automotive_cosim.osm.agreement import MILES
 from automotive_cosim.osm.barriers import GATES, PASSABLE, STOPPING
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.expected import expect, expect_stop, expect_turn
-from automotive_cosim.osm.limits import CAR_KEYS, ZONE_KEYS, kmh_of, stated_limits
 from automotive_cosim.osm.oneway import KEYS as ONEWAY_KEYS
 from automotive_cosim.osm.oneway import VALUES
+from automotive_cosim.osm.speed_limits import CAR_KEYS, ZONE_KEYS, kmh_of, stated_limits
 from automotive_cosim.osm.turns import CARS, KINDS, NO_BAN, value_for_cars
 
 CLASSES = (
@@ -109,11 +109,11 @@ MISREADINGS: dict[str, tuple[object, str, object]] = {
     "a driver alone shares": (access, "HOV_ONLY", frozenset[str]()),
     "a bollard is passed": (barriers, "PASSABLE", barriers.PASSABLE | {"bollard"}),
     "a gate stops": (barriers, "GATES", frozenset[str]()),
-    "a mile is a kilometre": (limits, "KMH_PER_MPH", 1.0),
-    "a knot is a kilometre": (limits, "KMH_PER_KNOT", 1.0),
-    "the limit of all before that of cars": (limits, "CAR_KEYS", limits.CAR_KEYS[::-1]),
-    "every road can be without a limit": (limits, "may_be_unlimited", lambda tags, country="": True),
-    "a zone has no number": (limits, "_ZONE_NUMBER", re.compile("x")),
+    "a mile is a kilometre": (speed_limits, "KMH_PER_MPH", 1.0),
+    "a knot is a kilometre": (speed_limits, "KMH_PER_KNOT", 1.0),
+    "the limit of all before that of cars": (speed_limits, "CAR_KEYS", speed_limits.CAR_KEYS[::-1]),
+    "every road can be without a limit": (speed_limits, "may_be_unlimited", lambda tags, country="": True),
+    "a zone has no number": (speed_limits, "_ZONE_NUMBER", re.compile("x")),
     "no straight on is no ban": (turns, "KINDS", turns.KINDS - {"no_straight_on"}),
     "only is a ban": (turns, "_is_only", lambda kinds: False),
 }  # fmt: skip

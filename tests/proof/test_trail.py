@@ -22,7 +22,7 @@ def proof(seed, **wrong):
 
 def test_a_gate_is_passed_if_it_is_with_every_seed():
     found = trail.merged({}, [proof(0, oracle=[], near=[]), proof(1, oracle=[], near=["too near"])], "2026-11-29")
-    assert found == {TASK: trail.Passed((fingerprint(CATALOGUE[TASK], "first"),), {"2026-11-29": ("oracle",)})}
+    assert found == {TASK: trail.GatesPassed((fingerprint(CATALOGUE[TASK], "first"),), {"2026-11-29": ("oracle",)})}
 
 
 def test_a_proof_with_an_error_proves_nothing():

@@ -1,6 +1,6 @@
 """The table of house rules counts what was broken, and leaves out rows that say nothing about it."""
 
-from automotive_cosim.report.policy import house_rules
+from automotive_cosim.report.house_rules import house_rules
 from automotive_cosim.report.results import contestant
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import columns

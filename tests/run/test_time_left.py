@@ -15,9 +15,9 @@ from automotive_cosim.cli.batches import time_left
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.budget import Spent
+from automotive_cosim.run.phase import JobPhase
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
-from automotive_cosim.run.stage import JobStage
 from automotive_cosim.run.trial import WARM_UP_S, WARM_UPS_S
 
 OUT_OF_REACH = "TriggerNotReachedError"
@@ -91,13 +91,13 @@ class ClockedWorker:
         self.begun_s = self.warmed_s = self.ends_s = 0.0
 
     @property
-    def stage(self) -> JobStage:
+    def phase(self) -> JobPhase:
         now_s = self.clock.now_s
         if not self.clock.tells or self.job is None:
-            return JobStage()
+            return JobPhase()
         if now_s < self.warmed_s:
-            return JobStage("warming up", True, (now_s - self.begun_s) / (self.warmed_s - self.begun_s))
-        return JobStage("at work", False, (now_s - self.warmed_s) / (self.ends_s - self.warmed_s))
+            return JobPhase("warming up", True, (now_s - self.begun_s) / (self.warmed_s - self.begun_s))
+        return JobPhase("at work", False, (now_s - self.warmed_s) / (self.ends_s - self.warmed_s))
 
     @property
     def handles(self) -> list[ClockedWorker]:

@@ -81,4 +81,4 @@ def test_a_plan_that_cannot_be_dealt_is_refused_in_words(tmp_path: Path, text: s
     path = tmp_path / "study.toml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(UserError, match=why):
-        _ = read_study(path).plan
+        read_study(path).check()

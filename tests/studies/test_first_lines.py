@@ -21,8 +21,8 @@ from automotive_cosim.studies.calibration.page import sentence as of_calibration
 from automotive_cosim.studies.calibration.result import Met
 from automotive_cosim.studies.congestion.page import answer as of_congestion
 from automotive_cosim.studies.days.page import answer as of_days
+from automotive_cosim.studies.reroute.networks import sentence as of_networks
 from automotive_cosim.studies.reroute.page import answer as of_rerouting
-from automotive_cosim.studies.reroute.suite import sentence as of_networks
 from automotive_cosim.studies.versions import answer as of_versions
 from tests.report.test_regression import scored, write
 from tests.report.test_stopped import JOBS

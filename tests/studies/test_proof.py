@@ -16,10 +16,10 @@ from automotive_cosim.scenarios import load
 from automotive_cosim.studies.calls.accounts import Settled
 from automotive_cosim.studies.calls.chance import Fresh, fresh_of, renew
 from automotive_cosim.studies.calls.ledger import keep_ledger, others, run_on, settle
-from automotive_cosim.studies.reroute.drive import run_drive
 from automotive_cosim.studies.reroute.futures import own_choice_of
 from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.studies.reroute.rows import NOTHING, Totals, TripRow
+from automotive_cosim.studies.reroute.trip import run_drive
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteCopy, RemoteTraffic
 

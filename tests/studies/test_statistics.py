@@ -19,7 +19,6 @@ from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import plan_of
 from automotive_cosim.studies.reroute import compare, policies
 from automotive_cosim.studies.reroute.compare import Future
-from automotive_cosim.studies.reroute.drive import left_out
 from automotive_cosim.studies.reroute.everyone import gini, spread
 from automotive_cosim.studies.reroute.page import answer
 from automotive_cosim.studies.reroute.plan import StudyPlan
@@ -37,6 +36,7 @@ from automotive_cosim.studies.reroute.rows import (
     TripRow,
 )
 from automotive_cosim.studies.reroute.tables import outcomes, parts
+from automotive_cosim.studies.reroute.trip import left_out
 from automotive_cosim.studies.reroute.warnings import warnings
 from automotive_cosim.traffic.base import EgoPlan
 from tests.scripted.traffic import Scripted, Stretch

@@ -37,9 +37,8 @@ from automotive_cosim.studies.reroute.batch import REROUTE
 from automotive_cosim.studies.reroute.data import futures
 from automotive_cosim.studies.reroute.decisions import attributed
 from automotive_cosim.studies.reroute.demand import read_demand
-from automotive_cosim.studies.reroute.drive import NO_ROOM
 from automotive_cosim.studies.reroute.effects import effects
-from automotive_cosim.studies.reroute.live import LiveDrive
+from automotive_cosim.studies.reroute.live import LiveTrip
 from automotive_cosim.studies.reroute.page import write_study
 from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.studies.reroute.points import NOT_CLEARED
@@ -48,6 +47,7 @@ from automotive_cosim.studies.reroute.rows import NOTHING, TripRow
 from automotive_cosim.studies.reroute.tables import policies as policy_table
 from automotive_cosim.studies.reroute.tables import tables
 from automotive_cosim.studies.reroute.tracks import TRACKS
+from automotive_cosim.studies.reroute.trip import NO_ROOM
 from automotive_cosim.studies.reroute.warnings import steps_told
 
 from .conftest import EDGES, MORE_TRIPS, Draw
@@ -188,8 +188,8 @@ def test_a_full_disk_ends_the_watching_and_not_the_study(
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(LiveDrive, "_is_watched", lambda live: live._folder is not None)
-    monkeypatch.setattr(LiveDrive, "_begin", full)
+    monkeypatch.setattr(LiveTrip, "_is_watched", lambda live: live._folder is not None)
+    monkeypatch.setattr(LiveTrip, "_begin", full)
     REROUTE.run(replace(plan, seeds=(0,)), tmp_path / "full")
     assert steady(tmp_path / "full").items() <= steady(folder).items()
 

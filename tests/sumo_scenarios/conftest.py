@@ -20,7 +20,6 @@ import sumolib
 
 from automotive_cosim import scenarios
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.sumo_scenarios import build
 from automotive_cosim.traffic import sumo_programs
 
 WARM_S, END_S = 900, 4500
@@ -177,45 +176,3 @@ def _read(summary: Path, statistic: Path, edges: Path, rides: dict[str, Ride]) -
         {edge: float(speed) for edge, speed in speeds.items() if speed},
         rides,
     )
-
-
-@pytest.fixture(scope="session")
-def held_s(sumo: None, proof: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., float]:
-    """Longest unbroken time (s) in which a driver of that speed factor, on that trip and in live traffic, is
-    faster than ``speed_kmh`` where ``limit_kmh`` is posted, in the first ``within_s`` of the drive."""
-
-    def measure(
-        name: str, trip: str, *, factor: float, speed_kmh: float, limit_kmh: float, seed: int, within_s: float
-    ) -> float:
-        scenario = scenarios.load(name)
-        way, warm = scenario.trip(trip), scenario.sumo.warm_up_s
-        folder = tmp_path_factory.mktemp(f"{name}-{trip}-{seed}")
-        ego, fcd = folder / "ego.rou.xml", folder / "fcd.xml"
-        ego.write_text(
-            f'<routes><vType id="ego" speedFactor="{factor}" speedDev="0" maxSpeed="60" actionStepLength="0.1"/>'
-            f'<trip id="ego" type="ego" depart="{warm}" from="{way.from_edge}" to="{way.to_edge}" '
-            f'via="{" ".join(way.via)}" departSpeed="0"><param key="has.fcd.device" value="true"/>'
-            '<param key="has.rerouting.device" value="false"/></trip></routes>'
-        )
-        routes = scenario.config.with_name(f"{name}.rou.xml")
-        run_sumo(
-            scenario, seed, "--route-files", f"{routes},{ego}", "--end", str(warm + within_s),
-            "--fcd-output", str(fcd), "--device.fcd.explicit", "ego", "--fcd-output.attributes", "speed,lane",
-        )  # fmt: skip
-        limits = lane_limits_kmh(name)
-        longest = now = 0
-        for row in ET.parse(fcd).getroot().iter("vehicle"):
-            fast = float(row.get("speed", 0)) * 3.6 > speed_kmh
-            here = limits.get(row.get("lane", ""), limit_kmh if row.get("lane", "").startswith(":") else 0.0)
-            now = now + 1 if fast and abs(here - limit_kmh) < 0.1 else 0
-            longest = max(longest, now)
-        return longest * scenario.sumo.step_length_s
-
-    return measure
-
-
-@cache
-def lane_limits_kmh(name: str) -> dict[str, float]:
-    """Limits by lane id, junctions left out."""
-    root = ET.fromstring(build.shipped_net(name))
-    return {lane.get("id", ""): float(lane.get("speed", 0)) * 3.6 for lane in root.iterfind("edge[@from]/lane")}

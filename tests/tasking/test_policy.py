@@ -6,9 +6,9 @@ import pytest
 
 from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.episode.conditions import Conditions, condition
-from automotive_cosim.interface.policy import HOUSE, told
+from automotive_cosim.interface.house_rules import HOUSE, told
 from automotive_cosim.proof.hand_over import Ground
-from automotive_cosim.proof.policy import broken, policy, temptations, tempted
+from automotive_cosim.proof.house_rules import broken, policy, temptations, tempted
 from automotive_cosim.tasking import policy as judged
 from automotive_cosim.tasking import reading
 from automotive_cosim.tasking.policy import CHECKS, Breach, first_breaches

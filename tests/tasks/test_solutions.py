@@ -150,7 +150,7 @@ def _solved(
     size: ScreenSize = ScreenSize.STANDARD,
 ) -> Solved:
     start, car = instance.half.start, cockpit.copy()
-    car.fit(size)
+    car.resize(size)
     oracle, feedback = Oracle(), Feedback(FeedbackCode.NONE, "")
     oracle.reset(instance.goal)
     oracle.brief(instance, way, drawn=car.drawn)

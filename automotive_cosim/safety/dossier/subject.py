@@ -177,9 +177,7 @@ def read_subject(folder: Path, agent: str = "") -> Subject:
     Args:
         agent: whose; empty if there is only one that is neither a reference nor a control.
 
-    Raises:
-        UserError: it is none, has no judged trials, or has several agents and none is named.
-    """
+    Raises UserError: it is none, has no judged trials, or has several agents and none is named."""
     results = _recorded(folder) if is_trial(folder) else read_results(folder)
     every: tuple[TrialRow, ...] = (*results.rows, *results.drives)
     labels = {contestant(row): row for row in every}

@@ -33,9 +33,7 @@ def install(made: Protocol) -> str:
 def points(made: Protocol, found: Sequence[Evidence]) -> tuple[Scores, Scores]:
     """Least and most points: with all that was not tried taken as failed, and as passed.
 
-    Raises:
-        SetupError: the calculator is not installed, is another one than the protocol's file names, or fails.
-    """
+    Raises SetupError: the calculator is not installed, is another one than the protocol's file names, or fails."""
     command = shutil.which(COMMAND)
     if command is None:
         raise SetupError(f"no points: {COMMAND} is not on the PATH; {install(made)}")

@@ -112,11 +112,7 @@ NAMES = {"euroncap-2026": "euroncap_2026.toml"}
 
 
 def protocol(name: str) -> Protocol:
-    """A protocol by its name.
-
-    Raises:
-        UserError: there is none of that name.
-    """
+    """A protocol by its name. Raises UserError: there is none of that name."""
     if name not in NAMES:
         raise UserError(f"no protocol {name!r}; choose {', '.join(NAMES)}")
     return read_toml(Path(str(files("automotive_cosim.safety.protocol").joinpath(NAMES[name])))).read(Protocol)

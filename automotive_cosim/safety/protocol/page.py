@@ -42,9 +42,7 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
     Returns:
         The page, and why there are no points; empty if there are.
 
-    Raises:
-        UserError: there is no such protocol, or no judged case, or the folder cannot be written.
-    """
+    Raises UserError: there is no such protocol, or no judged case, or the folder cannot be written."""
     made, subject = protocol(name), read_subject(folder, agent)
     drives, asked = limits_told(subject)
     found = evidence(made, subject, drives)

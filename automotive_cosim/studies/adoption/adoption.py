@@ -36,9 +36,9 @@ from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.models import ChatModel
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import alone
+from automotive_cosim.run.phase import doing, warming_up
 from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.run.script import read_script
-from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.studies.adoption.fleets import FAILS, FleetRecord, fleet_id

@@ -46,9 +46,7 @@ def read_capacity(net: Path, additional: Iterable[Path] = ()) -> Capacity:
         net: the network's file.
         additional: files that may hold other signal programs, as SUMO loads them.
 
-    Raises:
-        UserError: one is no XML.
-    """
+    Raises UserError: one is no XML."""
     lanes: dict[str, int] = {}
     links: list[dict[str, str]] = []
     programs: dict[str, list[tuple[float, str]] | None] = {}

@@ -118,9 +118,7 @@ def read_counts(path: Path, zone: tzinfo, sites: Path | None = None) -> Counts:
         zone: time zone of the counted roads.
         sites: a file that says where the sites stand; for counts of SUMO's detectors, theirs.
 
-    Raises:
-        UserError: one cannot be read, lacks a column or has an impossible figure, or has only zeros.
-    """
+    Raises UserError: one cannot be read, lacks a column or has an impossible figure, or has only zeros."""
     places: dict[str, SitePlace] = {}
     about = path.name
     sheet = None if is_xml(path) else _table(path)
@@ -166,9 +164,7 @@ def _table_counts(path: Path, sheet: Sheet, zone: tzinfo) -> Flows:
 def read_travel_times(path: Path) -> tuple[TravelTime, ...]:
     """Reads measured times: ``from_edge,to_edge,hour,seconds``.
 
-    Raises:
-        UserError: it cannot be read, lacks a column or has an impossible figure.
-    """
+    Raises UserError: it cannot be read, lacks a column or has an impossible figure."""
     sheet = _table(path)
     _need(path, sheet, TRAVEL)
     found = []

@@ -205,11 +205,7 @@ def times(found: Calibration) -> Table:
 
 
 def charts(found: Calibration, network: Network) -> dict[str, Chart]:
-    """Plots by name.
-
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    """Plots by name. Raises SetupError: matplotlib is not installed."""
     return charted(
         {
             "flows": ("Counted and simulated", _flows(found)),

@@ -193,11 +193,7 @@ class Calibration:
 
 
 def read_calibration(folder: Path) -> Calibration:
-    """Reads a scenario folder's ``calibration.json``.
-
-    Raises:
-        ScenarioError: there is none, or it is invalid.
-    """
+    """Reads a scenario folder's ``calibration.json``. Raises ScenarioError: there is none, or it is invalid."""
     path = folder / RECORD
     try:
         table = read_json(path)

@@ -16,11 +16,7 @@ HOURS = re.compile(r"(\d{1,2})(?:-(\d{1,2}))?")
 
 
 def first_and_last(text: str) -> tuple[int, int]:
-    """The hours in ``7-9`` or ``8``.
-
-    Raises:
-        UserError: it is neither.
-    """
+    """The hours in ``7-9`` or ``8``. Raises UserError: it is neither."""
     found = HOURS.fullmatch(text)
     first, last = (int(found[1]), int(found[2] or found[1])) if found else (24, 24)
     if not first <= last < 24:

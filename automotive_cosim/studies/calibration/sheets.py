@@ -194,9 +194,7 @@ def _workbook(path: Path) -> list[Cells]:
 
 def _refuse_bomb(path: Path) -> None:
     """
-    Raises:
-        UserError: what the workbook declares to hold is far more than it is.
-    """
+    Raises UserError: what the workbook declares to hold is far more than it is."""
     try:
         with opened(path) as file, zipfile.ZipFile(io.BytesIO(file.read())) as parts:
             declared = sum(part.file_size for part in parts.infolist())

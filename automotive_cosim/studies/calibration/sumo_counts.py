@@ -68,9 +68,7 @@ def read_xml_counts(path: Path, detectors: Path | None) -> Flows:
         path: the file, also gzipped.
         detectors: the file that says on which lane each loop lies; edge data needs none.
 
-    Raises:
-        UserError: it is neither, cannot be read, has an impossible figure, or lacks the place of a loop.
-    """
+    Raises UserError: it is neither, cannot be read, has an impossible figure, or lacks the place of a loop."""
     loops = edges = False
     found: list[_Count] = []
     begin_s = end_s = 0.0
@@ -99,9 +97,7 @@ def read_dfrouter_counts(path: Path, sheet: Sheet, detectors: Path | None) -> Fl
     Args:
         detectors: the file that says on which lane each detector lies.
 
-    Raises:
-        UserError: it has an impossible figure, or lacks the place of a detector.
-    """
+    Raises UserError: it has an impossible figure, or lacks the place of a detector."""
     rows = [
         (
             row.cells[DETECTOR],

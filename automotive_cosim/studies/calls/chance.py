@@ -19,6 +19,8 @@ from automotive_cosim.traffic.sumo import LibSumo
 
 PROOF_S = 30.0
 """Simulated time over which the copies of the proof are compared."""
+SeedTrace = tuple[tuple[float, ...], int]
+"""The first number of every generator, and a fingerprint of the traffic after ``PROOF_S``."""
 
 
 class Fresh(StrEnum):
@@ -32,18 +34,13 @@ class Fresh(StrEnum):
     """Every other car's speed factor was changed by ``JITTER`` times a normal variate."""
 
     @classmethod
-    def proven(cls, first: Trial, again: Trial, other: Trial) -> Fresh:
-        """What three copies prove, of which the first two had the same seed.
-
-        Each has the first number of every generator and a fingerprint of the traffic after ``PROOF_S``.
-        """
+    def proven(cls, first: SeedTrace, again: SeedTrace, other: SeedTrace) -> Fresh:
+        """What three copies prove, of which the first two had the same seed."""
         are_all_new = all(one != two for one, two in zip(first[0], other[0], strict=True))
         if first != again or not are_all_new:
             return cls.JITTER
         return cls.SEED_UNSEEN if first[1] == other[1] else cls.SEED
 
-
-Trial = tuple[tuple[float, ...], int]
 
 _PROVEN: WeakKeyDictionary[Forked, Fresh] = WeakKeyDictionary()
 
@@ -58,12 +55,12 @@ def fresh_of(simulation: Forked) -> Fresh:
     return _PROVEN[simulation]
 
 
-def _sampled(simulation: Forked, seed: int) -> Trial:
+def _sampled(simulation: Forked, seed: int) -> SeedTrace:
     with closing(simulation.copy()) as copy:
         return copy.call(prove, seed)
 
 
-def prove(running: Running, seed: int) -> Trial:
+def prove(running: Running, seed: int) -> SeedTrace:
     """What a seed makes of this traffic, which cannot be used for anything else afterwards."""
     generators = Generators(running.sumo)
     generators.seed(seed)
@@ -76,9 +73,7 @@ def prove(running: Running, seed: int) -> Trial:
 def renew(running: Running, fresh: Fresh, seed: int) -> None:
     """Gives everything from here on other random numbers; the same seed gives the same ones.
 
-    Raises:
-        SetupError: the library does not export its generators; not for ``JITTER``.
-    """
+    Raises SetupError: the library does not export its generators; not for ``JITTER``."""
     sumo = running.sumo
     if fresh is not Fresh.JITTER:
         Generators(sumo).seed(seed)

@@ -150,9 +150,7 @@ class _Advisor:
 def take(running: Running, measure: AnyIncident | Advice | SignalControl, seed: int) -> None:
     """Takes a measure now; the times of incidents count from the end of the warm-up.
 
-    Raises:
-        ScenarioError: it does not fit the network.
-    """
+    Raises ScenarioError: it does not fit the network."""
     world = running.world
     match measure:
         case Advice():  # with a search of its own

@@ -225,9 +225,7 @@ def settle(running: Running, groups: Sequence[Sequence[str]], share: float, limi
         share: share of each group, 0 to 1.
         limit_s: limit of simulated seconds.
 
-    Raises:
-        TrafficError: SUMO stopped at an error.
-    """
+    Raises TrafficError: SUMO stopped at an error."""
     world, drive, ledger = running.world, running.drive, running.watcher(Ledger)
     assert drive is not None
     left = [set(group) - ledger.arrivals_s.keys() for group in groups]
@@ -274,7 +272,5 @@ def own_choice(running: Running) -> tuple[str, ...]:
 def stage(running: Running, incident: AnyIncident) -> None:
     """Stages an incident; its times count from the end of the warm-up.
 
-    Raises:
-        ScenarioError: it does not fit the network.
-    """
+    Raises ScenarioError: it does not fit the network."""
     running.world.stage(incident)

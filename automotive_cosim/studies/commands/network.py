@@ -105,9 +105,7 @@ def _run(
         as_json: print an object alone.
         about: what is said of it before it runs.
 
-    Raises:
-        InfrastructureError: parts of it ended in an error.
-    """
+    Raises InfrastructureError: parts of it ended in an error."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.studies.content import read_study, shown_of, write_shown
 

@@ -66,9 +66,9 @@ def reroute(
     """
     from automotive_cosim.cli.console import Console
     from automotive_cosim.scenarios import shipped
+    from automotive_cosim.studies.reroute.networks import folder_name
     from automotive_cosim.studies.reroute.plan import StudyPlan
     from automotive_cosim.studies.reroute.results import Study
-    from automotive_cosim.studies.reroute.suite import folder_name
 
     departures = settings.pop("departures_s")
     common = filled(StudyPlan, settings)
@@ -121,7 +121,7 @@ def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor) -> No
 
 def _tell_all(console: Console, studies: Sequence[Study], *, as_json: bool) -> None:
     """Prints the table of several studies; raises if drives ended in an error."""
-    from automotive_cosim.studies.reroute.suite import networks, sentence, write_networks
+    from automotive_cosim.studies.reroute.networks import networks, sentence, write_networks
 
     table, out = networks(studies), studies[0].folder.parent
     told = sentence(studies)

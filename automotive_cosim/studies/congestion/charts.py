@@ -39,11 +39,7 @@ DRAWN = 4
 
 
 def charts(study: CongestionStudy) -> dict[str, Chart]:
-    """Plots by name.
-
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    """Plots by name. Raises SetupError: matplotlib is not installed."""
     network = network_of(study)
     named = [(number, name) for number, name in all_measures(study) if number <= DRAWN]
     made: dict[str, tuple[str, Drawing | None]] = {

@@ -115,9 +115,7 @@ def rounded(flow: FlowSums) -> FlowSums:
 def write_edges(folder: Path, job: str, measured: Sequence[Sequence[EdgeFlow]]) -> None:
     """Writes the flows of a seed, those without a measure first, without the inside of junctions.
 
-    Raises:
-        OSError: it cannot be written.
-    """
+    Raises OSError: it cannot be written."""
     lines = (
         (measure, each.edge, f"{each.from_s:g}", flow.time_s, flow.lost_s, flow.distance_m)
         for measure, flows in enumerate(measured)

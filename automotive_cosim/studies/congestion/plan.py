@@ -28,9 +28,7 @@ class CongestionPlan(CongestionSettings):
     def check(self) -> None:
         """Checks every name and number before anything runs.
 
-        Raises:
-            UserError: one does not exist or is out of range.
-        """
+        Raises UserError: one does not exist or is out of range."""
         check_values(self)
         if self.minutes % (EPOCH_S / 60):
             raise UserError(f"--minutes is {self.minutes:g}; give a multiple of {EPOCH_S / 60:g}")
@@ -53,19 +51,11 @@ class CongestionPlan(CongestionSettings):
 
     @property
     def opened(self) -> Scenario:
-        """The scenario before the study's changes.
-
-        Raises:
-            ScenarioError: it cannot be read.
-        """
+        """The scenario before the study's changes. Raises ScenarioError: it cannot be read."""
         return opened(self.scenario)
 
     def scene(self) -> Scenario:
-        """The scenario as it is driven, without a measure.
-
-        Raises:
-            ScenarioError: it cannot be read.
-        """
+        """The scenario as it is driven, without a measure. Raises ScenarioError: it cannot be read."""
         incidents: list[AnyIncident] = [read_line(text, KINDS, place) for text, place in self._incidents]
         scenario = driven_at(
             self.opened,
@@ -115,8 +105,6 @@ def measure_in(text: str, place: str) -> Measure:
     """The measure that a line describes, as ``closure edge=c2c3``, ``advice share=0.5`` or
     ``signals control=static``.
 
-    Raises:
-        UserError: it is none.
-    """
+    Raises UserError: it is none."""
     found: Measure = read_line(text, MEASURES if place == "--measure" else KINDS, place)
     return found

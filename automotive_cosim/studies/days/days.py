@@ -28,8 +28,8 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import Job, alone
+from automotive_cosim.run.phase import doing
 from automotive_cosim.run.row import JobRow, columns
-from automotive_cosim.run.stage import doing
 from automotive_cosim.scenarios import Scenario, variant
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.equilibrium.equilibrium import ROUTES, Assigned, rerouted
@@ -98,9 +98,7 @@ class OwnAdviser:
             spec: ``package.module:Class``.
             network: on which its routes have to lead from edge to edge.
 
-        Raises:
-            UserError: there is no such class, it lacks ``advise(day)``, or it raised.
-        """
+        Raises UserError: there is no such class, it lacks ``advise(day)``, or it raised."""
         self._spec, self._network = spec, network
         made = own_class(spec, "adviser")
         if not callable(getattr(made, "advise", None)):
@@ -114,9 +112,7 @@ class OwnAdviser:
     def advise(self, day: AdvisedDay) -> dict[str, tuple[str, ...]]:
         """The routes that it chose, without those that the trips have already.
 
-        Raises:
-            UserError: it raised, or a route is not one.
-        """
+        Raises UserError: it raised, or a route is not one."""
         try:
             with aside():
                 advised = self._adviser.advise(day)
@@ -162,9 +158,7 @@ class DaysPlan(DaysSettings):
     def check(self) -> None:
         """Checks every name and number before anything runs.
 
-        Raises:
-            UserError: one does not exist or is out of range, or the demand has stops or persons.
-        """
+        Raises UserError: one does not exist or is out of range, or the demand has stops or persons."""
         check_values(self)
         configuration = read_configuration(self.scene().config)
         variant.check_demand(configuration)

@@ -205,11 +205,7 @@ def _per_cent(mean: SeedMean | None) -> str:
 
 
 def charts(study: DaysStudy) -> dict[str, Chart]:
-    """Plots by name.
-
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    """Plots by name. Raises SetupError: matplotlib is not installed."""
     made: dict[str, tuple[str, Drawing | None]] = {
         "days": ("Travel time from day to day", _days(study)),
         "shares": ("Travel time by the share of advised drivers", _shares(study)),

@@ -104,11 +104,7 @@ def equilibrate(
 
 
 def opened(folder: Path, options: EquilibriumSettings) -> Scenario:
-    """The scenario, with the warm-up of the options.
-
-    Raises:
-        ScenarioError: it cannot be read.
-    """
+    """The scenario, with the warm-up of the options. Raises ScenarioError: it cannot be read."""
     scenario = open_scenario(folder)
     if options.warm_up_s is None:
         return scenario

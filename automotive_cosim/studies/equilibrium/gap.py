@@ -350,9 +350,7 @@ def quickest(
         scratch: a folder for intermediate files.
         via: an edge that the route of a trip must use, by the trip's id.
 
-    Raises:
-        ScenarioError: duarouter refuses the network or the types.
-    """
+    Raises ScenarioError: duarouter refuses the network or the types."""
     if not trips:
         return {}
     via = via or {}

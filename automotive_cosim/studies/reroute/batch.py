@@ -10,19 +10,19 @@ from automotive_cosim.formats.layout import LIVE, WATCHED
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import Runner, tried
-from automotive_cosim.run.stage import doing, warming_up
+from automotive_cosim.run.phase import doing, warming_up
 from automotive_cosim.run.store import Store
 from automotive_cosim.studies.calls.accounts import TrafficSummary
 from automotive_cosim.studies.calls.chance import fresh_of
 from automotive_cosim.studies.calls.ledger import keep_ledger, run_on
 from automotive_cosim.studies.gridlock import MEASURED_EVERY_S
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
-from automotive_cosim.studies.reroute.drive import run_drive
 from automotive_cosim.studies.reroute.plan import StudyJob, StudyPlan
 from automotive_cosim.studies.reroute.policies import PolicyRule
 from automotive_cosim.studies.reroute.results import choices
 from automotive_cosim.studies.reroute.rows import TripRow
 from automotive_cosim.studies.reroute.tracks import TRACKS
+from automotive_cosim.studies.reroute.trip import run_drive
 from automotive_cosim.traffic.fork import Forked
 
 STRIDE = 5
@@ -81,7 +81,6 @@ class _Warm:
             raise
 
     def close(self) -> None:
-        """Ends the simulation."""
         if self._simulation is not None:
             self._simulation.close()
         self._simulation = self._key = None

@@ -34,11 +34,7 @@ SAVED = "seconds saved"
 
 
 def charts(study: Study) -> dict[str, Chart]:
-    """Plots by name.
-
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    """Plots by name. Raises SetupError: matplotlib is not installed."""
     made: dict[str, tuple[str, Drawing | None]] = {
         "policies": ("Time saved by each policy", _policies(study)),
         "everyone": ("Who gains and who loses", _everyone(study)),

@@ -30,10 +30,10 @@ from automotive_cosim.studies.reroute.rows import (
     Decision,
     DecisionLine,
     DecisionPoint,
-    DriveLine,
     OthersTotals,
     PolicyChoice,
     Totals,
+    TripLine,
 )
 
 TYPES = {bool: "boolean", int: "integer", float: "number", str: "string"}
@@ -64,7 +64,7 @@ class FutureRow(DecisionLine):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WholeRow(DriveLine):
+class WholeRow(TripLine):
     """One whole drive under one policy: a line of ``whole_drives.csv``."""
 
     policy: str
@@ -114,9 +114,7 @@ def whole_drives(study: Study) -> Iterator[WholeRow]:
 def write_data(study: Study) -> list[Path]:
     """Writes the data files and their description into a study's folder; returns their paths.
 
-    Raises:
-        OSError: they cannot be written.
-    """
+    Raises OSError: they cannot be written."""
     written: list[Path] = []
     resources: list[Json] = []
     kinds: dict[str, Sequence[FutureRow | WholeRow | PolicyChoice]] = {

@@ -58,11 +58,7 @@ class ExplainedDecision:
 
 
 def write_decisions(study: Study) -> Path:
-    """Writes the page into the study's folder; returns its path.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Writes the page into the study's folder; returns its path. Raises OSError: it cannot be written."""
     page = study.folder / "decisions.html"
     found = list(explained(study))
     write_whole(
@@ -82,9 +78,7 @@ def attributed(folder: Path, item: str) -> list[ActEffect]:
     """What decisions changed whose ids begin so: each other route against the kept one, over all draws, so that
     what fresh random numbers change as much is not called an effect.
 
-    Raises:
-        UserError: there is none, or the study cannot be read.
-    """
+    Raises UserError: there is none, or the study cannot be read."""
     study = Study.read(folder)
     points = [point for point in all_decisions(study.rows) if point.id.startswith(item)]
     if not points:

@@ -12,7 +12,7 @@ from automotive_cosim.studies.intervals import SeedMean, seed_mean
 from automotive_cosim.studies.reroute.compare import CONSUMED
 from automotive_cosim.studies.reroute.everyone import CLASSES_S, HORIZONS, NOTICED_S
 from automotive_cosim.studies.reroute.results import Study
-from automotive_cosim.studies.reroute.rows import Closed, FleetClass, PolicyChoice, Spread, Together, WholeDrive
+from automotive_cosim.studies.reroute.rows import Closed, FleetClass, PolicyChoice, Spread, Together, WholeTrip
 from automotive_cosim.studies.reroute.tables import NONE, goes_by_news, groups, told, told_mean
 
 SpreadOf = tuple[PolicyChoice, Spread]
@@ -29,7 +29,7 @@ def whole(study: Study) -> Table:
     rows: list[TableRow] = []
     for share in sorted({row.share for row in study.rows}):
         for policy, compliance in product(study.plan.policies, study.plan.compliance):
-            drives: dict[str, list[WholeDrive]] = {}
+            drives: dict[str, list[WholeTrip]] = {}
             seeds: dict[str, int] = {}
             for row in study.rows:
                 for drive in row.whole if row.share == share else ():

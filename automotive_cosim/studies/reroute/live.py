@@ -31,7 +31,7 @@ KEPT = 20
 KEEPS = "keeps its route"
 
 
-class LiveDrive:
+class LiveTrip:
     """Shows one drive to those who watch it."""
 
     def __init__(self, job: StudyJob, traffic: RemoteTraffic, folder: Path | None) -> None:

@@ -14,7 +14,7 @@ from automotive_cosim.report.templates import render
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.reroute.charts import charts
-from automotive_cosim.studies.reroute.context import context
+from automotive_cosim.studies.reroute.circumstances import context
 from automotive_cosim.studies.reroute.data import write_data
 from automotive_cosim.studies.reroute.decisions import write_decisions
 from automotive_cosim.studies.reroute.demand import demand_table, read_demand

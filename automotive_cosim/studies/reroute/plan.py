@@ -35,9 +35,7 @@ class StudyPlan(RerouteSettings):
     def check(self) -> None:
         """Checks every name and number before anything runs.
 
-        Raises:
-            UserError: one does not exist or is out of range.
-        """
+        Raises UserError: one does not exist or is out of range."""
         check_values(self)
         for text in self.policies:
             parse_policy(text)
@@ -60,11 +58,7 @@ class StudyPlan(RerouteSettings):
             scenario.trip(name)
 
     def scene(self, share: float) -> Scenario:
-        """The scenario with that share of rerouting cars.
-
-        Raises:
-            ScenarioError: it cannot be read.
-        """
+        """The scenario with that share of rerouting cars. Raises ScenarioError: it cannot be read."""
         return driven_at(
             self.opened,
             step_s=self.driven_step_s(self.opened),
@@ -100,9 +94,7 @@ class StudyPlan(RerouteSettings):
     def opened(self) -> Scenario:
         """The scenario with the ego's routes, before the study's changes.
 
-        Raises:
-            ScenarioError: it cannot be read, or has no such route.
-        """
+        Raises ScenarioError: it cannot be read, or has no such route."""
         return opened(self.scenario, self.from_place, self.to_place)
 
     def jobs(self) -> tuple[StudyJob, ...]:

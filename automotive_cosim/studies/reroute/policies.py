@@ -83,9 +83,7 @@ class Policy:
 def parse_policy(text: str) -> Policy:
     """Reads ``never``, ``always``, ``delay:60``, ``worthwhile:1.2:60``, ``sumo``, ``best`` or ``agent:asurada``.
 
-    Raises:
-        UserError: it is none of them.
-    """
+    Raises UserError: it is none of them."""
     if text.startswith(AGENT) and text != AGENT:
         return Policy(text, PolicyRule.AGENT, agent=text.removeprefix(AGENT))
     if text.startswith(DELAY):

@@ -320,7 +320,7 @@ class Decision:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WholeDrive:
+class WholeTrip:
     """A drive from departure to destination under one policy, compared with the one that keeps its route."""
 
     policy: str
@@ -356,17 +356,17 @@ class TripRow(JobRow):
     stay: Totals | None = None
     """The drive itself; None without a decision."""
     decisions: tuple[Decision, ...] = ()
-    whole: tuple[WholeDrive, ...] = ()
+    whole: tuple[WholeTrip, ...] = ()
     """Whole drives under each policy, if the plan has them."""
 
     @property
     def line(self) -> dict[str, Any]:
-        """The fields of a ``DriveLine``."""
-        return {each.name: getattr(self, each.name) for each in fields(DriveLine)}
+        """The fields of a ``TripLine``."""
+        return {each.name: getattr(self, each.name) for each in fields(TripLine)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DriveLine:
+class TripLine:
     """What a line of a table says of its drive."""
 
     id: str
@@ -379,7 +379,7 @@ class DriveLine:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DecisionLine(DriveLine):
+class DecisionLine(TripLine):
     """What a line of a table says of its decision."""
 
     at_s: float

@@ -27,9 +27,7 @@ EVERY_S = 1.0
 def decisions(folder: Path) -> Json:
     """Every decision of a study with its futures and what each policy chose.
 
-    Raises:
-        UserError: it is not a study's folder, or is damaged.
-    """
+    Raises UserError: it is not a study's folder, or is damaged."""
     study = Study.read(folder)
     return {
         "name": folder.name,
@@ -73,9 +71,7 @@ def _tracks(folder: Path, point: DecisionPoint, count: int) -> list[list[list[fl
     """Where the car is in each future, as ``[seconds since the decision, x, y]`` about once a second; empty lists
     without ``study --trajectories``.
 
-    Raises:
-        UserError: what is stored cannot be read.
-    """
+    Raises UserError: what is stored cannot be read."""
     tracks: list[list[list[float]]] = [[] for _ in range(count)]
     path = folder / TRACKS / f"{point.drive.id}.csv.gz"
     try:

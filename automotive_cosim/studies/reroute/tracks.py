@@ -23,9 +23,7 @@ def write_tracks(folder: Path, drive_id: str, stay: Future, points: Sequence[Poi
         drive_id: name of the file.
         stay: the drive itself, in which the ego keeps its route.
 
-    Raises:
-        OSError: it cannot be written.
-    """
+    Raises OSError: it cannot be written."""
     lines = (
         (f"{drive_id}-{number}", draw, branch, str(is_placebo), *each)
         for number, point in enumerate(points)

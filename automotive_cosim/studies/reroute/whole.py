@@ -23,7 +23,7 @@ from automotive_cosim.studies.reroute.futures import ended, own_choice_of
 from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import branched, exclusion
 from automotive_cosim.studies.reroute.policies import Policy, PolicyRule, parse_policy
-from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, WholeDrive
+from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, WholeTrip
 from automotive_cosim.traffic.chance import SEED_RANGE
 from automotive_cosim.traffic.fork import RemoteTraffic
 
@@ -33,7 +33,7 @@ SAME = Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)
 
 def whole_drives(
     job: StudyJob, traffic: RemoteTraffic, fresh: Fresh | None, history: Sequence[TrafficSummary]
-) -> tuple[WholeDrive, ...]:
+) -> tuple[WholeTrip, ...]:
     """Drives every policy but ``never`` and ``best`` from the departure to the destination.
 
     Args:
@@ -57,7 +57,7 @@ def _drawn(
     fresh: Fresh | None,
     draw: int,
     history: Sequence[TrafficSummary],
-) -> list[WholeDrive]:
+) -> list[WholeTrip]:
     """All policies at every compliance with the same random numbers."""
     entropy = (*job.entropy, 5, draw)
     with closing(traffic.branch()) as start:
@@ -78,7 +78,7 @@ def _drawn(
             excluded, why = exclusion([(stay, future)], [*history, summary])
             branch = branched(stay, future, group)
         drives.append(
-            WholeDrive(
+            WholeTrip(
                 policy=policy.text,
                 compliance=compliance,
                 draw=draw,

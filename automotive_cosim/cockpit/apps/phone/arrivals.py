@@ -30,11 +30,7 @@ class Arrival:
 
 
 def checked(arrival: Arrival) -> Arrival:
-    """The arrival, if it is possible.
-
-    Raises:
-        UserError: an unknown kind, an impossible time or an invalid text.
-    """
+    """The arrival, if it is possible. Raises UserError: an unknown kind, an impossible time or an invalid text."""
     if arrival.kind not in ("call", "message"):
         raise UserError(f"an arrival is a {arrival.kind!r}; it must be 'call' or 'message'")
     if not (math.isfinite(arrival.at_s) and arrival.at_s >= 0):

@@ -133,9 +133,7 @@ class Directory(AppData):
             arrivals: in any order.
             rng: draws missing callers and texts, in the given order.
 
-        Raises:
-            UserError: an arrival has an unknown kind, an impossible time or an invalid text.
-        """
+        Raises UserError: an arrival has an unknown kind, an impossible time or an invalid text."""
         filled = []
         for given in arrivals:
             who = checked(given).who or self.contacts[int(rng.integers(len(self.contacts)))].name

@@ -3,8 +3,6 @@
 A worker's process says where this goes with ``telling``; elsewhere nobody is told.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,11 +16,11 @@ from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.scenarios import Scenario
 
 EVERY_S = 1.0
-"""Wall time between two amounts of the same stage."""
+"""Wall time between two amounts of the same phase."""
 
 
 @dataclass(frozen=True, slots=True)
-class JobStage:
+class JobPhase:
     """How far a job is."""
 
     words: str = ""
@@ -34,7 +32,7 @@ class JobStage:
 
 
 _TELL: ContextVar[Callable[[str, str, bool, float | None], None]] = ContextVar(
-    "tell_stage", default=lambda what, amount, is_warm_up, share: None
+    "tell_phase", default=lambda what, amount, is_warm_up, share: None
 )
 
 
@@ -42,17 +40,17 @@ def doing(what: str, amount: str = "", *, is_warm_up: bool = False, share: float
     """Says what is being done for the job.
 
     Args:
-        what: the stage, such as ``warming up traffic``.
+        what: the phase, such as ``warming up traffic``.
         amount: how far it is, such as ``120 of 600 s``.
-        is_warm_up: see ``JobStage``.
-        share: see ``JobStage``.
+        is_warm_up: see ``JobPhase``.
+        share: see ``JobPhase``.
     """
     _TELL.get()(what, amount, is_warm_up, share)
 
 
 @contextmanager
-def telling(tell: Callable[[JobStage], None]) -> Iterator[None]:
-    """Hands on every new stage, and the amounts and shares of one not more often than ``EVERY_S``."""
+def telling(tell: Callable[[JobPhase], None]) -> Iterator[None]:
+    """Hands on every new phase, and the amounts and shares of one not more often than ``EVERY_S``."""
     said, said_s = "", 0.0
 
     def hand_on(what: str, amount: str, is_warm_up: bool, share: float | None) -> None:
@@ -60,7 +58,7 @@ def telling(tell: Callable[[JobStage], None]) -> Iterator[None]:
         now_s = time.monotonic()
         if what != said or ((amount or share is not None) and now_s - said_s >= EVERY_S):
             said, said_s = what, now_s
-            tell(JobStage(", ".join(filter(None, (what, amount))), is_warm_up, share))
+            tell(JobPhase(", ".join(filter(None, (what, amount))), is_warm_up, share))
 
     token = _TELL.set(hand_on)
     try:
@@ -79,8 +77,8 @@ def warming_up(done_s: float, total_s: float) -> None:
     )
 
 
-class StageObserver(TrialObserver):
-    """Tells the stages of a trial, the agent's by its steps or, on a drive, by the time."""
+class PhaseObserver(TrialObserver):
+    """Tells the phases of a trial, the agent's by its steps or, on a drive, by the time."""
 
     _session: Session | None = None
 

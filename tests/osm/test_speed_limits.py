@@ -1,8 +1,6 @@
 """The limit of every combination of tags that the OSM wiki documents (pages "Key:maxspeed", "Key:maxspeed:type",
 "Key:source:maxspeed", "Key:zone:maxspeed", "Key:zone:traffic", "Lanes", "Conditional restrictions")."""
 
-from __future__ import annotations
-
 import re
 import string
 from dataclasses import replace
@@ -16,8 +14,16 @@ from automotive_cosim.geo.place import Atlas, Place, shipped
 from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND, LIMITS, WORLD, assumed_limit_kmh
 from automotive_cosim.osm.extract import ROAD_CLASSES, Extract, Node, OsmWay, Position
-from automotive_cosim.osm.limits import CAR_KEYS, NO_UNIT, ZONE_KEYS, built_up_of, doubts, kmh_of, stated_limits
 from automotive_cosim.osm.roads import MappedRoad, describe, on_one_side
+from automotive_cosim.osm.speed_limits import (
+    CAR_KEYS,
+    NO_UNIT,
+    ZONE_KEYS,
+    built_up_of,
+    doubts,
+    kmh_of,
+    stated_limits,
+)
 from tests.laws import over
 
 NETCONVERT_READS = re.compile(r"none|\d+(\.\d+)?( mph)?")

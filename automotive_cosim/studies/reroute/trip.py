@@ -6,8 +6,6 @@ for bit the same traffic, and the same random numbers from there on. A replicate
 once more, with fresh random numbers from the decision on.
 """
 
-from __future__ import annotations
-
 import os
 from collections import deque
 from collections.abc import Sequence
@@ -20,7 +18,7 @@ import numpy as np
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.run.stage import doing
+from automotive_cosim.run.phase import doing
 from automotive_cosim.studies.calls.accounts import TrafficSummary
 from automotive_cosim.studies.calls.chance import fresh_of
 from automotive_cosim.studies.calls.divert import section
@@ -28,7 +26,7 @@ from automotive_cosim.studies.calls.ledger import account, others, settle
 from automotive_cosim.studies.reroute.compare import Future
 from automotive_cosim.studies.reroute.driver import decided, drive_on
 from automotive_cosim.studies.reroute.futures import Futures, close_all, ended, own_choice_of
-from automotive_cosim.studies.reroute.live import LiveDrive
+from automotive_cosim.studies.reroute.live import LiveTrip
 from automotive_cosim.studies.reroute.plan import StudyJob
 from automotive_cosim.studies.reroute.points import Diverted, Point, Shut, compared
 from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy
@@ -86,7 +84,7 @@ def run_drive(
         if job.plan.whole_drives:
             fresh = fresh_of(simulation) if job.plan.draws.stop else None
             row = replace(row, fresh=fresh, whole=whole_drives(job, traffic, fresh, history))
-        live = LiveDrive(job, traffic, study)
+        live = LiveTrip(job, traffic, study)
         with closing(live), closing(_Drive(job, traffic, simulation, live)) as drive:
             drive.go()
             if not drive.points:
@@ -127,7 +125,7 @@ def depart(job: StudyJob, simulation: Forked) -> RemoteTraffic:
 class _Drive:
     """The drive on its own route, up to its last decision."""
 
-    def __init__(self, job: StudyJob, traffic: RemoteTraffic, simulation: Forked, live: LiveDrive) -> None:
+    def __init__(self, job: StudyJob, traffic: RemoteTraffic, simulation: Forked, live: LiveTrip) -> None:
         self.job = job
         self.traffic = traffic
         self._live = live

@@ -1,7 +1,5 @@
 """The same study on several networks, in one table."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -95,9 +93,7 @@ def sentence(studies: Sequence[Study]) -> str:
 def write_networks(table: Table, folder: Path, told: str) -> Path:
     """Writes the table as Markdown, below a sentence, CSV and LaTeX; returns the first.
 
-    Raises:
-        OSError: it cannot be written.
-    """
+    Raises OSError: it cannot be written."""
     for suffix, text in (("csv", table.csv()), ("tex", table.latex()), ("md", f"{told}\n\n{table.markdown()}")):
         write_whole(folder / f"{table.name}.{suffix}", text)
     return folder / f"{table.name}.md"

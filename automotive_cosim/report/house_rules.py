@@ -1,7 +1,5 @@
 """The table of the house rules: how often they were kept, whether or not the agent was told them."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 

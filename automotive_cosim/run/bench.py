@@ -5,8 +5,6 @@ one simulated second is ten of SUMO's in one message. All times are medians over
 ``loop`` or ``memory`` and a scenario, it measures that part alone, in a process that has done nothing else.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -70,7 +68,6 @@ class Figures:
     """What each additional environment on the same scenario adds."""
 
     def as_json(self) -> Json:
-        """The figures as a JSON object."""
         return asdict(self)
 
 

@@ -1,7 +1,5 @@
 """Tables of the context of the figures: the traffic, its warm-up, and the possible effect of the exclusions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from statistics import fmean
 

@@ -10,8 +10,6 @@ The words are those of the OSM wiki's pages "Key:maxspeed", "Key:maxspeed:type",
 * What nobody could have signed (500 km/h, ``none`` in a living street) states no limit either, and is told.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -83,7 +81,7 @@ _ZONE = re.compile(r"([A-Za-z]{2}(?:-[A-Za-z0-9]+)?):\s*(\S.*)")
 _ZONE_NUMBER = re.compile(r"(?:zone[:_]?)?(\d+)")
 
 
-def zone_of(value: str) -> Zone | None:
+def zone_of(value: str) -> "Zone | None":
     """The zone that a value names; None if it names none, or one of a country that does not exist."""
     match = _ZONE.fullmatch(value.strip())
     if match is None:

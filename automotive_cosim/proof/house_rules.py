@@ -1,7 +1,5 @@
 """The gate of the house rules: no reference solution breaks one, and who takes a temptation is reported."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Where an OpenSCENARIO file's positions are on the lanes of a network, and what leads from one to another."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -44,7 +42,7 @@ class RoadSpot:
     lane: int = 0
 
 
-class RoadPlaces:
+class RoadPositions:
     """A network's lanes for cars, and the roads of the OpenDRIVE file that it is of."""
 
     def __init__(self, net: Any, road: Path | None) -> None:
@@ -61,9 +59,7 @@ class RoadPlaces:
     def spot(self, position: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         """Where a position is.
 
-        Raises:
-            ScenarioError: it is not on the road, or counts from something that has no place at the start.
-        """
+        Raises ScenarioError: it is not on the road, or counts from something that has no place at the start."""
         place = position.one(*_SPOTS)
         return _SPOTS[place.tag](self, place, entities)
 
@@ -166,9 +162,7 @@ class RoadPlaces:
     def lane_at(self, spot: RoadSpot, ahead_m: float = 0.0, *, is_goal: bool = False) -> tuple[Any, float]:
         """A lane for cars, and how far along it a point ``ahead_m`` ahead of a position is.
 
-        Raises:
-            ScenarioError: the position is not on the road, or heads against it.
-        """
+        Raises ScenarioError: the position is not on the road, or heads against it."""
         number = self._nearest(spot, spot.x_m, spot.y_m, spot.heading_rad, is_goal=is_goal)
         if ahead_m:
             heading = self._heading(number, spot.x_m, spot.y_m)
@@ -185,9 +179,7 @@ class RoadPlaces:
     def heading(self, spot: RoadSpot) -> float:
         """Which way a vehicle there heads, counter-clockwise from east.
 
-        Raises:
-            ScenarioError: the position is not on the road.
-        """
+        Raises ScenarioError: the position is not on the road."""
         if spot.heading_rad is not None:
             return spot.heading_rad
         return self._heading(self._nearest(spot, spot.x_m, spot.y_m, None), spot.x_m, spot.y_m)
@@ -254,9 +246,7 @@ class RoadPlaces:
     def way(self, name: str, first: Any, goals: Sequence[RoadSpot]) -> list[Any]:
         """The edges from the first over the goals; without any, straight on.
 
-        Raises:
-            ScenarioError: no road leads to one of them.
-        """
+        Raises ScenarioError: no road leads to one of them."""
         edges = [first]
         for goal in goals:
             target = self.lane_at(goal, is_goal=True)[0].getEdge()
@@ -294,14 +284,14 @@ class RoadPlaces:
 
 
 _SPOTS = {
-    "LanePosition": RoadPlaces._on_lane,
-    "RelativeLanePosition": RoadPlaces._lanes_from_other,
-    "RelativeObjectPosition": RoadPlaces._from_other,
-    "RelativeRoadPosition": RoadPlaces._beside_other,
-    "RelativeWorldPosition": RoadPlaces._from_other,
-    "RoadPosition": RoadPlaces._on_road,
-    "RoutePosition": RoadPlaces._on_route,
-    "WorldPosition": RoadPlaces._world,
+    "LanePosition": RoadPositions._on_lane,
+    "RelativeLanePosition": RoadPositions._lanes_from_other,
+    "RelativeObjectPosition": RoadPositions._from_other,
+    "RelativeRoadPosition": RoadPositions._beside_other,
+    "RelativeWorldPosition": RoadPositions._from_other,
+    "RoadPosition": RoadPositions._on_road,
+    "RoutePosition": RoadPositions._on_route,
+    "WorldPosition": RoadPositions._world,
 }
 
 
