@@ -35,7 +35,7 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watchers import READS, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.episode.session import Actor, play
+from automotive_cosim.episode.session import Actor, driven, play
 from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.spaces import GOAL_BYTES
@@ -545,6 +545,6 @@ def test_the_answer_is_the_one_that_drivers_give_in_tasks() -> None:
 @pytest.mark.slow
 def test_thinking_takes_time_on_the_road(begin: Begin) -> None:
     session = begin(60.0)
-    session.think(20.0)
+    driven(session.thinking(20.0))
     session.step(Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED))
     assert session.seconds == pytest.approx(21.0)

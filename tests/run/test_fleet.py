@@ -178,7 +178,7 @@ def test_the_command_runs_a_fleet_and_tells_of_each_car(sumo: None, tmp_path: Pa
     assert len(read_rows(tmp_path / "fleet", DriveTrialRow)) == 2
     again = CliRunner().invoke(app, [*words, "--out", str(tmp_path / "fleet"), "--force"])
     assert again.exit_code
-    assert "never replaced" in again.output
+    assert "never replaced" in str(again.exception)
 
 
 def test_a_car_of_a_fleet_does_not_drive_alone(simulations: Simulations) -> None:
