@@ -280,7 +280,7 @@ def test_an_assistants_errors_are_those_of_one_car(
     plan = {"format": FORMAT, "plan": replace(PLAN, seeds=(1,)).as_json()}
     (tmp_path / "manifest.json").write_text(json.dumps(plan))
     (tmp_path / "episodes.jsonl").write_text(json.dumps(as_json(row)) + "\n")
-    assert shares(tmp_path)["fleets"] == [{"id": "seed1-100", "running": False}]
+    assert shares(tmp_path)["fleets"] == [{"id": "seed1-100", "words": "seed 1, 100 %", "running": False}]
     assert len(cars(tmp_path, "seed1-100")["cars"]) == len(row.shares[0].cars)
     with pytest.raises(NotHereError, match="seed9"):
         cars(tmp_path, "seed9-100")
