@@ -561,10 +561,11 @@ class Signals:
 
     def snapshot(self) -> Snapshot:
         """Path and value of every signal, as they are now."""
-        commanded = _actuators(self._values)
-        if self._commanded is None or not all(map(is_, commanded, self._commanded)):
-            self._commanded = commanded
-        return Snapshot(self._commanded, _others(self._values))
+        commanded, last = _actuators(self._values), self._commanded
+        if last is not None and all(map(is_, commanded, last)):
+            commanded = last
+        self._commanded = commanded
+        return Snapshot(commanded, _others(self._values))
 
     def picked(self, read: Callable[[Mapping[str, Any]], tuple[Any, ...]]) -> tuple[Any, ...]:
         """What a getter takes of all paths and values, without a copy of them."""

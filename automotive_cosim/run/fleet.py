@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
-from functools import partial
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -129,9 +128,10 @@ class _Running:
         if self._folder is not None:
             leader = self._drives[0]
             cars = {car_named(each.car): each.id for each in self._drives}
-            look = partial(road.call, seen, tuple(cars))
             shapes, about = first.world.traffic.shapes(), {**leader.about, "cars": cars}
-            self._record = FleetRecord(self._folder, record_of(leader.id), road, shapes, look, about)
+            self._record = FleetRecord(
+                self._folder, record_of(leader.id), road, shapes, lambda: road.call(seen, tuple(cars)), about
+            )
             self._ends.enter_context(closing(self._record))
 
 
