@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import closing
+from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,11 +16,12 @@ from automotive_cosim.cli.derived import settings_in
 from automotive_cosim.cli.options import AsJson, DriveChanges, LimitSettings, print_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.errors import InfrastructureError, UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.drive_row import DriveTrialRow
+    from automotive_cosim.run.plan import PlannedTrial
 
 
 def run_drive(
@@ -42,12 +45,19 @@ def run_drive(
     from automotive_cosim.report.hearing import with_sounds
     from automotive_cosim.run.drive import DriveSetup
     from automotive_cosim.run.drive_row import DriveTrialRow
+    from automotive_cosim.run.plan import PlannedTrial
     from automotive_cosim.run.record import Recorder, check_folder, stamped_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.trial import Limits, run_trial
     from automotive_cosim.run.trial_folder import read_steps
 
+    changes = DriveSettings(**settings_in(DriveChanges, settings))
+    if changes.cars:
+        planned = PlannedTrial(drive=family, scenario=settings["scenario"] or "", seed=seed, settings=changes)
+        planned = replace(planned, conditions=Conditions.named(given(settings)))
+        _run_fleet(planned, agent, model, out, limited, force=force, as_json=as_json)
+        return
     under = Conditions.named(given(settings)).at(seed)
     limits = Limits().of_drives.within(limited.tokens, limited.seconds)
     told = instructions(under.prompt)
@@ -60,7 +70,7 @@ def run_drive(
         seed,
         under,
         settings["scenario"] or "",
-        DriveSettings(**settings_in(DriveChanges, settings)),
+        changes,
         limited.steps or limits.steps,
         agent=player.name,
         model=player.model,
@@ -82,6 +92,49 @@ def run_drive(
     if silent:
         console.print(silent, soft_wrap=True)
     console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
+
+
+def _run_fleet(
+    drive: PlannedTrial,
+    agent: str,
+    model: str,
+    out: Path | None,
+    limited: LimitSettings,
+    *,
+    force: bool,
+    as_json: bool,
+) -> None:
+    """Runs a fleet as an evaluation of one drive, and tells of each car."""
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.cli.evaluate import limits_told
+    from automotive_cosim.run.batch import run_plan
+    from automotive_cosim.run.drive_row import DriveTrialRow
+    from automotive_cosim.run.plan import make_plan
+    from automotive_cosim.run.record import stamped_folder
+    from automotive_cosim.run.row import as_json as row_json
+    from automotive_cosim.run.settings import Pictures
+    from automotive_cosim.run.store import read_rows, read_trace
+
+    lists = {"agents": [agent], "models": [model], "drives": [drive.drive], "limits": limits_told(limited)}
+    plan = replace(make_plan(lists), drives=(), trials=(drive,))
+    folder = out or stamped_folder(f"{drive.drive}-{agent}-seed{drive.seed}-{drive.settings.cars}cars")
+    if force:
+        raise UserError("a fleet's folder is resumed, never replaced; give --out another folder, and no --force")
+    run_plan(plan, folder, pictures=Pictures.ALL, retries=0)
+    rows = sorted(read_rows(folder, DriveTrialRow).values(), key=attrgetter("car"))
+    if as_json:
+        print_json({"cars": [row_json(row) for row in rows], "out": str(folder)})
+    console = Console(highlight=False)
+    for row in () if as_json else rows:
+        console.print(f"Car {row.car}:", style="bold")
+        if row.error is None:
+            _tell(console, row, read_trace(folder, row.id)[-1]["result"]["timeline"])
+        else:
+            console.print(f"{row.error_kind}: {row.error}", markup=False, soft_wrap=True)
+    if failed := [row.error for row in rows if row.error is not None]:
+        raise InfrastructureError(f"{len(failed)} of {len(rows)} cars ended in an error; the first: {failed[0]}")
+    if not as_json:
+        console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
 
 
 def drives(as_json: AsJson = False) -> None:

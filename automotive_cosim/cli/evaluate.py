@@ -77,7 +77,7 @@ def evaluate(
     values |= settings_in(EvaluationSettings, settings) | values_of(settings)
     told = settings_in(DriveChanges, settings)
     values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
-    own = _limits(most or LimitSettings())
+    own = limits_told(most or LimitSettings())
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = filled(Budget, settings)
     plan = make_plan(values)
@@ -195,7 +195,7 @@ def _named(tasks: Sequence[str]) -> str:
     return few if len(tasks) <= 3 else f"{len(tasks)} tasks, such as {few}"
 
 
-def _limits(told: LimitSettings) -> Json:
+def limits_told(told: LimitSettings) -> Json:
     """The limits of a plan that options set, of tasks and of drives."""
     if told.wall is not None:
         raise UserError("--most wall is a limit of `run`; in a plan, agent_s of [limits] is one")

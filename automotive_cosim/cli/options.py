@@ -159,6 +159,8 @@ class DriveChanges:
     """End drives after this many simulated minutes."""
     errands: bool = False
     """On drives, people aboard also ask for things, near what safety asks for."""
+    cars: Annotated[int | None, Ge(1), Le(512)] = None
+    """Drive so many cars in one traffic, each with an agent, a driver and a judge of its own."""
 
 
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.")]

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from operator import itemgetter
+from operator import is_, itemgetter
 from typing import Any, Generic, TypeVar, cast
 
 from automotive_cosim.errors import SignalError, UnknownNameError
@@ -485,10 +485,49 @@ def named(path: str) -> Signal[Any]:
         raise UnknownNameError("signal", path, CATALOGUE) from None
 
 
+class Snapshot(Mapping[str, Any]):
+    """Path and value of every signal at one instant, in a sixth of the room of a dict: a drive has one a second.
+    Those between which nothing was commanded share what is."""
+
+    __slots__ = ("_commanded", "_others")
+
+    def __init__(self, commanded: tuple[Any, ...], others: tuple[Any, ...]) -> None:
+        """Of the values of the actuators, and of all other signals."""
+        self._commanded, self._others = commanded, others
+
+    def __getitem__(self, path: str) -> Any:
+        place = _PLACES[path]
+        value = self._commanded[place] if place >= 0 else self._others[~place]
+        if value is None and path in OF_ATTENTION:
+            raise KeyError(path)
+        return value
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.as_dict())
+
+    def __len__(self) -> int:
+        return len(self.as_dict())
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Snapshot):
+            return self._commanded == other._commanded and self._others == other._others
+        return self.as_dict() == other
+
+    def __repr__(self) -> str:
+        return repr(self.as_dict())
+
+    def as_dict(self) -> dict[str, Any]:
+        """The same in the order of the catalogue."""
+        values = dict(zip(CATALOGUE, _in_order(self._commanded + self._others), strict=True))
+        if values[DRIVER.DISTRACTION.path] is None:
+            del values[DRIVER.DISTRACTION.path], values[DRIVER.FATIGUE.path]
+        return values
+
+
 class Signals:
     """The values of all signals, always valid."""
 
-    __slots__ = ("_values",)
+    __slots__ = ("_commanded", "_values")
 
     def __init__(self, values: Mapping[str, Any] | None = None) -> None:
         """All at their defaults except ``values``, by path.
@@ -498,6 +537,8 @@ class Signals:
             SignalError: a value is invalid.
         """
         self._values: dict[str, Any] = {path: signal.default for path, signal in CATALOGUE.items()}
+        self._commanded: tuple[Any, ...] | None = None
+        """The actuators' values in the last snapshot."""
         for path, value in (values or {}).items():
             self._values[path] = named(path).check(value)
 
@@ -512,12 +553,13 @@ class Signals:
     def __iter__(self) -> Iterator[Signal[Any]]:
         return iter(CATALOGUE.values())
 
-    def snapshot(self) -> dict[str, Any]:
-        """Path and value of every signal; a copy."""
-        values = dict(self._values)
-        if values[DRIVER.DISTRACTION.path] is None:
-            del values[DRIVER.DISTRACTION.path], values[DRIVER.FATIGUE.path]
-        return values
+    def snapshot(self) -> Snapshot:
+        """Path and value of every signal, as they are now."""
+        commanded, last = _actuators(self._values), self._commanded
+        if last is not None and all(map(is_, commanded, last)):
+            commanded = last
+        self._commanded = commanded
+        return Snapshot(commanded, _others(self._values))
 
     def picked(self, read: Callable[[Mapping[str, Any]], tuple[Any, ...]]) -> tuple[Any, ...]:
         """What a getter takes of all paths and values, without a copy of them."""
@@ -532,13 +574,18 @@ class Signals:
 
     def copy(self) -> Signals:
         twin = Signals.__new__(Signals)
-        twin._values = self._values.copy()
+        twin._values, twin._commanded = self._values.copy(), self._commanded
         return twin
 
 
 ACTUATORS = tuple(path for path, signal in CATALOGUE.items() if signal.kind is LeafKind.ACTUATOR)
 """Paths of all actuators."""
-_actuators = itemgetter(*ACTUATORS)
+OTHERS = tuple(path for path in CATALOGUE if path not in ACTUATORS)
+_actuators, _others = itemgetter(*ACTUATORS), itemgetter(*OTHERS)
+_in_order = itemgetter(*map((*ACTUATORS, *OTHERS).index, CATALOGUE))
+_PLACES = {path: place for place, path in enumerate(ACTUATORS)} | {path: ~n for n, path in enumerate(OTHERS)}
+OF_ATTENTION = (DRIVER.DISTRACTION.path, DRIVER.FATIGUE.path)
+"""Not in a snapshot where they are None."""
 
 
 def difference(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 
@@ -14,8 +15,9 @@ from automotive_cosim.formats.scenario import weather_since
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
-from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.fork import RemoteTraffic, Simulations
 from automotive_cosim.traffic.rounds import loop_with
+from automotive_cosim.traffic.sumo import EGO
 
 ADVICE_S = 120.0
 """How long a driver keeps to advice, and stops when asked to: our choice; a reason that lasts is told again."""
@@ -144,6 +146,48 @@ def beside(script: DriveScript, first: DriveScript, later_s: float) -> DriveScri
         density=first.density,
         coarse=first.coarse,
     )
+
+
+def car_named(number: int) -> str:
+    """SUMO's id of a car of a fleet."""
+    return f"{EGO}.{number}" if number else EGO
+
+
+class Departures:
+    """The cars of a fleet, as each enters the traffic."""
+
+    def __init__(self, scripts: Sequence[DriveScript], first: CoSimulation) -> None:
+        """Sends all but the first to where their trips begin.
+
+        Args:
+            scripts: the drives of all cars by their numbers.
+            first: that of the first, which has departed; its roads, hour and weather are the others', too.
+
+        Raises:
+            UserError: they are on different roads.
+            TrafficError: the traffic simulation failed.
+        """
+        self._scripts, self._begun_s = scripts, first.moment.time_s
+        self.road = drive_of(first).road
+        """The traffic of all."""
+        self.coming = {car_named(number): number for number in range(1, len(scripts))}
+        """Those that have not entered, by SUMO's id."""
+        for car, number in self.coming.items():
+            own = beside(scripts[number], scripts[0], 0.0)
+            self.road.send(car, ego_plan(own, scenario_of(own)))
+
+    def entered(self) -> Iterator[tuple[int, DriveScript, RemoteTraffic]]:
+        """The numbers of those that have entered since this was last called, what each drives, and its traffic."""
+        for traffic in self.road.entered():
+            number, later_s = self.coming.pop(traffic.car), traffic.state.time_s - self._begun_s
+            yield number, beside(self._scripts[number], self._scripts[0], later_s), traffic
+
+
+def drive_of(world: CoSimulation) -> RemoteTraffic:
+    """The drive of a car in a process that it may share."""
+    traffic = world.traffic.wrapped
+    assert isinstance(traffic, RemoteTraffic)
+    return traffic
 
 
 def ego_plan(script: DriveScript, scenario: Scenario) -> EgoPlan:

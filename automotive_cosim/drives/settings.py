@@ -64,6 +64,9 @@ class DriveSettings:
     """Who rides on the rear seat, behind the passenger's, besides the driver and nobody else."""
     trailer: bool | None = None
     """Whether the car tows a trailer, for which the law may have other limits; it drives as if without one."""
+    cars: Annotated[int, Ge(1), Le(512)] | None = None
+    """How many cars drive in one traffic, each with a cockpit, an agent, a driver and a judge of its own: a fleet.
+    Car ``k`` drives what the seed ``k`` further on says, and enters as soon as there is a gap."""
     coarse: bool | None = None
     """Whether SUMO runs in steps of a second, which takes a fraction of the time; the traffic is another then, and
     drivers act only once a second."""

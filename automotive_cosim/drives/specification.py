@@ -18,6 +18,7 @@ from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import EpisodeSpec, SessionSetup
+from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import plain
 from automotive_cosim.traffic.base import Traffic
@@ -75,9 +76,11 @@ class DriveSpec:
             lean: lays out no screen (``SessionSetup.lean``).
 
         Raises:
-            UserError: something in the specification does not exist.
+            UserError: something in the specification does not exist, or it is a fleet and no script is given.
             InfrastructureError: no gap opened for the car, or the traffic simulation failed.
         """
+        if self.settings.cars and script is None:
+            raise UserError("a car of a fleet cannot drive alone; run the fleet, by `eval` or `run --drive`")
         drive, conditions = script or self.script, self.conditions.at(self.seed)
         units = dict(make_named(conditions.make).units.signals)
         units.pop(HMI.TEMPERATURE_UNIT.path, None)  # what is asked for in half degrees

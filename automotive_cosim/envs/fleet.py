@@ -17,7 +17,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from automotive_cosim.contracts import Action
-from automotive_cosim.drives.departure import beside, ego_plan, scenario_of
+from automotive_cosim.drives.departure import Departures, drive_of
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.envs.base import Stepped, action_of
@@ -28,8 +28,7 @@ from automotive_cosim.episode.fleet import Fleet
 from automotive_cosim.errors import ActionError, UserError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.tasking.draws import SEED_LIMIT
-from automotive_cosim.traffic.fork import RemoteRoad, RemoteTraffic
-from automotive_cosim.traffic.sumo import EGO
+from automotive_cosim.traffic.fork import RemoteTraffic
 
 if TYPE_CHECKING:
     from pettingzoo import ParallelEnv, register
@@ -87,8 +86,8 @@ class FleetEnv(ParallelEnv):
         self.action_spaces = {car: env.action_space for car, env in self.envs.items()}
         self._is_flat = flat
         self._fleet: Fleet[Stepped[Any]] = Fleet(1.0)
-        self._coming: dict[str, tuple[str, DriveSpec, DriveScript]] = {}
-        """By SUMO's id, the cars that have been sent and have not entered."""
+        self._specs: dict[str, DriveSpec] = {}
+        self._departures: Departures | None = None
         self._seen: dict[str, Any] = {}
 
     def observation_space(self, agent: str) -> gym.spaces.Space[Any]:
@@ -108,20 +107,14 @@ class FleetEnv(ParallelEnv):
             UserError: the drives of the cars are on different roads.
             InfrastructureError: no gap opened for the first car, or the traffic simulation failed.
         """
-        self._coming = {}
-        specs = {
+        self._specs = {
             car: env.draw(None if seed is None else seed + number)
             for number, (car, env) in enumerate(self.envs.items())
         }
-        first, *others = self.possible_agents
-        script = specs[first].script
-        seen, info = self.envs[first].depart(specs[first], script)
-        self._fleet = Fleet(self._road.step_s)
-        self._first, self._departed_s = script, self._now_s(first)
-        for number, car in enumerate(others, start=1):
-            own = beside(specs[car].script, script, 0.0)
-            self._coming[f"{EGO}.{number}"] = car, specs[car], own
-            self._road.send(f"{EGO}.{number}", ego_plan(own, scenario_of(own)))
+        first, scripts = self.possible_agents[0], [spec.script for spec in self._specs.values()]
+        seen, info = self.envs[first].depart(self._specs[first], scripts[0])
+        self._departures = Departures(scripts, self.envs[first].episode.world)
+        self._fleet = Fleet(self._departures.road.step_s)
         self.agents = [first]
         self._seen = {first: seen}
         return {first: seen}, {first: info}
@@ -134,7 +127,7 @@ class FleetEnv(ParallelEnv):
             ResetNeeded: no car is in the traffic.
             TrafficError: the traffic simulation failed.
         """
-        if not self.agents:
+        if not self.agents or self._departures is None:
             raise gym.error.ResetNeeded("no car is in the traffic; call reset()")
         free = [car for car in self.agents if car not in self._fleet.busy]
         if missing := [car for car in free if car not in actions]:
@@ -145,11 +138,11 @@ class FleetEnv(ParallelEnv):
             self._fleet.begin(car, env.stepping(chosen[car]), partial(self._now_s, car))
         done = self._fleet.run()
         told = {car: done.get(car, (self._seen[car], 0.0, False, False, {"busy": True})) for car in self.agents}
-        told |= dict(map(self._entered, self._road.entered()))
+        told |= dict(map(self._entered, self._departures.entered()))
         self._seen = {car: each[0] for car, each in told.items()}
         self.agents = [car for car in self.possible_agents if car in told and not (told[car][2] or told[car][3])]
         for car in told.keys() - set(self.agents) if self.agents else ():
-            self._road.leave(self._drive_of(car).car)
+            self._departures.road.leave(drive_of(self.envs[car].episode.world).car)
         return cast(Parts, tuple({car: each[part] for car, each in told.items()} for part in range(5)))
 
     def render(self) -> npt.NDArray[np.uint8] | None:
@@ -165,15 +158,6 @@ class FleetEnv(ParallelEnv):
         for env in self.envs.values():
             env.close()
 
-    @property
-    def _road(self) -> RemoteRoad:
-        return self._drive_of(self.possible_agents[0]).road
-
-    def _drive_of(self, car: str) -> RemoteTraffic:
-        traffic = self.envs[car].episode.world.traffic.wrapped
-        assert isinstance(traffic, RemoteTraffic)
-        return traffic
-
     def _now_s(self, car: str) -> float:
         return self.envs[car].episode.world.moment.time_s
 
@@ -183,11 +167,11 @@ class FleetEnv(ParallelEnv):
             return np.int64(number_of(action, len(ACTIONS)))
         return action if isinstance(action, Action) else action_of(action)
 
-    def _entered(self, traffic: RemoteTraffic) -> tuple[str, Stepped[Any]]:
+    def _entered(self, new: tuple[int, DriveScript, RemoteTraffic]) -> tuple[str, Stepped[Any]]:
         """A car that has entered the traffic, and what its agent sees first."""
-        car, spec, script = self._coming.pop(traffic.car)
-        script = beside(script, self._first, traffic.state.time_s - self._departed_s)
-        seen, info = self.envs[car].depart(spec, script, traffic)
+        number, script, traffic = new
+        car = self.possible_agents[number]
+        seen, info = self.envs[car].depart(self._specs[car], script, traffic)
         return car, (seen, 0.0, False, False, info)
 
 

@@ -128,12 +128,6 @@ class Session:
 
     # --- the loop -----------------------------------------------------------------------------------------
 
-    def think(self, seconds: float) -> None:
-        """Lets the time pass that the agent takes to answer; what it then does refers to the screen that it saw.
-
-        Raises TrafficError: the traffic simulation failed."""
-        driven(self.thinking(seconds))
-
     def step(self, action: Action) -> None:
         """Performs one action, lets its time pass and observes.
 
@@ -141,7 +135,8 @@ class Session:
         driven(self.stepping(action))
 
     def thinking(self, seconds: float) -> TakesTime[None]:
-        """As ``think``, tick by tick."""
+        """Lets the time pass, tick by tick, that the agent takes to answer; what it then does refers to the screen
+        that it saw."""
         self._check_open()
         if seconds > 0:
             yield from self._advance(seconds)
@@ -171,13 +166,14 @@ class Session:
 
     def cut_off(self, end: End) -> None:
         """Ends it early, e.g. for an agent that has spent its budget."""
-        self._check_open()
-        driven(self._finish(end))
+        driven(self.ending(end))
 
-    def give_up(self, why: str) -> None:
-        """Ends it because the agent can act no more: no success, whatever has been done."""
-        self.failure = why
-        self.cut_off(End.AGENT_FAILED)
+    def ending(self, end: End, failure: str | None = None) -> TakesTime[None]:
+        """As ``cut_off``, tick by tick; with the failure of an agent that can act no more, it is no success,
+        whatever has been done."""
+        self._check_open()
+        self.failure = failure
+        yield from self._finish(end)
 
     def close(self) -> None:
         """Ends the drive; may be called again."""
@@ -515,13 +511,18 @@ class Actor(Protocol):
 T = TypeVar("T", bound=Session)
 
 
-def play(
+def play(session: Session, actor: Actor) -> End:
+    """As ``playing``, on a road of the session's own."""
+    return driven(playing(session, actor))
+
+
+def playing(
     session: T,
     actor: Actor,
     stepped: Callable[[T, Sequence[Element]], None] = lambda session, seen: None,
     thought_s: Callable[[], float] = lambda: 0.0,
     wall_s: float = inf,
-) -> End:
+) -> TakesTime[End]:
     """Lets an actor act until the session is over, and returns why it is.
 
     Args:
@@ -538,23 +539,23 @@ def play(
     ends_s = time.monotonic() + wall_s
     while session.end is None:
         if time.monotonic() >= ends_s:
-            session.cut_off(End.OUT_OF_BUDGET)
+            yield from session.ending(End.OUT_OF_BUDGET)
             break
         seen = session.elements
         try:
             action = check(actor.act(session.observation))
         except ActionError as error:
-            session.think(thought_s())
-            session.refuse(str(error))
+            yield from session.thinking(thought_s())
+            yield from session.refusing(str(error))
         except OutOfBudgetError:
-            session.cut_off(End.OUT_OF_BUDGET)
+            yield from session.ending(End.OUT_OF_BUDGET)
             break
         except AgentError as error:
-            session.give_up(str(error))
+            yield from session.ending(End.AGENT_FAILED, str(error))
             break
         else:
-            session.think(thought_s())
-            session.step(action)
+            yield from session.thinking(thought_s())
+            yield from session.stepping(action)
         stepped(session, seen)
     assert session.end is not None
     return session.end

@@ -34,6 +34,7 @@ from automotive_cosim.publish.episodes import check_trial
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.publish.replays import Replayed, replay
 from automotive_cosim.run.coverage import Coverage, coverage
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.hidden import COMMITTED, commitment
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.plan import Plan, make_plan
@@ -157,7 +158,7 @@ def _read(folder: Path, bundle: Path | None, key: bytes | None = None) -> _Read:
     manifest, rows = read_evaluation(folder), read_trials(folder)
     found = coverage(manifest, rows)
     plan = make_plan(manifest["plan"])
-    jobs = {job.id: job for job in plan.jobs()}
+    jobs = plan.trials_by_id()
     problems += _manifest_problems(manifest, jobs)
     problems += _line_problems(folder, rows, strict=contents is not None)
     problems += [Problem(ROWS, name, "is not in the plan") for name in rows if name not in jobs]
@@ -289,8 +290,11 @@ def _count_problems(
 
 
 def _sample(rows: Mapping[str, TrialRow], count: int, seed: int) -> list[str]:
-    """Judged episodes, drawn with this seed."""
-    names = sorted(name for name, row in rows.items() if row.outcome is not None)
+    """Judged episodes, drawn with this seed; a car of a fleet cannot be driven again by itself."""
+    judged = {name: row for name, row in rows.items() if row.outcome is not None}
+    names = sorted(
+        name for name, row in judged.items() if not isinstance(row, DriveTrialRow) or not row.settings.cars
+    )
     drawn = np.random.default_rng(seed).permutation(len(names))[:count]
     return [names[number] for number in sorted(drawn)]
 

@@ -12,6 +12,7 @@ import numpy as np
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.contracts.plain import clock, counted
+from automotive_cosim.drives.departure import car_named
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.followed import FOLLOWED_S, LATER_S, followed
@@ -23,11 +24,13 @@ from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.drivechart import timeline_chart
 from automotive_cosim.report.findings import act_effects
+from automotive_cosim.report.fleet import FleetCar, shown_fleet
 from automotive_cosim.report.house_rules import house_rules
 from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, LEAST_CLUSTERS, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.fleet_record import fleets_in, read_fleet
 from automotive_cosim.run.store import read_trace, trace_file
 
 DRAWS = 2000
@@ -252,6 +255,7 @@ def tables(rows: Sequence[DriveTrialRow], folder: Path) -> list[Table]:
         table
         for table in (
             _watchers(groups),
+            _cars(rows),
             _faults(groups),
             _acts(groups, folder),
             act_effects(folder, {row.id: f"{contestant(row).label}, {row.name}, seed {row.seed}" for row in rows}),
@@ -301,6 +305,63 @@ def _intervals_told(groups: dict[Contestant, list[DriveTrialRow]]) -> str:
     if all(interval(mine, value_of) is None for mine in groups.values()):
         return f"Fewer than {LEAST_CLUSTERS} drives give no intervals."
     return f"In brackets: 95 % intervals from resampling whole drives, from {LEAST_CLUSTERS} drives on."
+
+
+def fleets(folder: Path, rows: Sequence[DriveTrialRow]) -> tuple[str, dict[str, str]]:
+    """The fleets whose cars were recorded: maps for the report with links, and a page for each by its file.
+
+    Raises:
+        UserError: a record is damaged.
+    """
+    known, maps, pages = {row.id: row for row in rows}, [], {}
+    for name, _ in fleets_in(folder):
+        fleet = read_fleet(folder, name)
+        cars = {car: known[trial] for car, trial in fleet.trials.items() if trial in known} if fleet else {}
+        if fleet is None or not cars:
+            continue
+        first, page = next(iter(cars.values())), f"{name}.html"
+        title = f"{counted(len(cars), 'car')}: {first.name}, seed {first.seed}, {contestant(first).label}"
+        told = [shown_car(car, row) for car, row in cars.items()]
+        note = "A score of 0 is doing nothing, 100 the rule-perfect watcher."
+        picture, pages[page] = shown_fleet(
+            fleet, told, LOOKS, OF_A_CAR, page, title=title, about=first.scenario, note=note
+        )
+        maps.append(f'<h2>Fleet</h2>\n<p><a href="{page}">{title}</a></p>\n{picture}')
+    return "\n".join(maps), pages
+
+
+LOOKS = {
+    "sooner": "everything was met, nothing was a nuisance",
+    "later": "something was missed or a nuisance",
+    "same": "nothing was due",
+    "failed": "its agent failed",
+}
+"""Cars on a map, by how they look."""
+OF_A_CAR = "Seed", "Score", "Events met", "Nuisances", "Steps"
+
+
+def shown_car(car: str, row: DriveTrialRow) -> FleetCar:
+    """A car on the map and in the list, by SUMO's id."""
+    error, words = row.error or row.agent_error or "", row.error or str(row.end).replace("_", " ")
+    cells: tuple[str, ...] = (str(row.seed), "–", "–", "–", str(row.steps))
+    kind = "failed" if error else "same" if row.has_nothing_due else "sooner" if row.outcome else "later"
+    if row.score is not None:
+        met = f"{row.score.met} of {row.score.events}"
+        cells = str(row.seed), f"{row.score.value:.0f}", met, str(row.score.nuisances), str(row.steps)
+        words = f"{met} events met, {counted(row.score.nuisances, 'nuisance')}"
+    return FleetCar(car, kind, words, cells, error)
+
+
+def _cars(rows: Sequence[DriveTrialRow]) -> Table:
+    """Every car of every fleet."""
+    lines = tuple(
+        (f"{row.name}, seed {row.seed - row.car}", contestant(row).label, car_named(row.car), *car.cells, car.error)
+        for row in sorted(rows, key=lambda row: (row.name, row.seed - row.car, contestant(row).label, row.car))
+        if row.settings.cars
+        for car in [shown_car(car_named(row.car), row)]
+    )
+    heads = "Fleet", "Watcher", "Car", *OF_A_CAR, "Failure"
+    return Table("cars", "Cars of fleets", heads, lines, "What failed in one car is that car's alone.", heads=3)
 
 
 def _effects(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:

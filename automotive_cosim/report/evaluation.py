@@ -13,7 +13,7 @@ from automotive_cosim.episode.conditions import told
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import PICTURES
-from automotive_cosim.formats.writing import drafted
+from automotive_cosim.formats.writing import drafted, write_whole
 from automotive_cosim.report import drives, findings
 from automotive_cosim.report.answer import answer
 from automotive_cosim.report.charts import Chart, charts, require_plots
@@ -125,7 +125,10 @@ def write_report(folder: Path) -> Path:
     try:
         with drafted(page := folder / "report.html") as file:
             write_files(folder, (*made, *of_drives), plots.values())
-            driven = of_drives, drives.timelines(folder, results.drives)
+            picture, pages = drives.fleets(folder, results.drives)
+            for name, text in pages.items():
+                write_whole(folder / name, text)
+            driven = of_drives, drives.timelines(folder, results.drives), picture
             told = _page(results, made, plots, found, driven) if results.rows else _drives_page(results, *driven)
             file.write(told.encode())
     except OSError as error:
@@ -170,7 +173,7 @@ def _page(
     made: Sequence[Table],
     plots: Mapping[str, Chart],
     found: Mapping[str, FailureClass],
-    driven: tuple[Sequence[Table], Mapping[str, Chart]],
+    driven: tuple[Sequence[Table], Mapping[str, Chart], str],
 ) -> str:
     numbers = {row.id: number for number, row in enumerate(results.rows)}
     sources, linked = _sources(results, made)
@@ -201,10 +204,11 @@ def _page(
         megabytes=megabytes(results.folder),
         drive_tables=driven[0],
         drive_plots=driven[1],
+        picture=driven[2],
     )
 
 
-def _drives_page(results: Results, made: Sequence[Table], plots: Mapping[str, Chart]) -> str:
+def _drives_page(results: Results, made: Sequence[Table], plots: Mapping[str, Chart], picture: str) -> str:
     """The page of an evaluation of drives alone."""
     rows = results.drives
     return render(
@@ -214,6 +218,7 @@ def _drives_page(results: Results, made: Sequence[Table], plots: Mapping[str, Ch
         errors=sum(row.error is not None for row in rows),
         tables=made,
         plots=plots,
+        picture=picture,
         plan=results.manifest["plan"],
         starts=results.manifest["starts"],
         stand_in=any(row.model == "rules" for row in rows),

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
+from automotive_cosim.errors import BudgetSpentError, InfrastructureError, NoRoomError, TriggerNotReachedError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.formats.writing import write_whole
@@ -35,7 +35,7 @@ from automotive_cosim.run.time_left import JobTurn, Pace
 from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 
-FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
+FINAL_KINDS = frozenset({TriggerNotReachedError.__name__, NoRoomError.__name__})
 """Errors that are certain to recur, so retrying is useless."""
 PATIENCE_S = 600.0
 """Wall time that a batch waits for its first worker, or for another one when all have died."""
@@ -121,6 +121,7 @@ class BatchKind(Generic[P, J, R]):
         tell: Callable[[Progress[R]], None] = lambda progress: None,
     ) -> Progress[R]:
         """Runs the remaining jobs of a plan; arguments and errors are those of ``run_plan``."""
+        plan.check()
         with (
             kept(plan, folder, self.row, self.parts) as store,
             executor.metered(budget, spent_before(store)) if self.asks_models else nullcontext() as meter,
@@ -278,14 +279,14 @@ class _Batch(Generic[J, R]):
         self._newest: R | None = None
         self._failures: dict[str, list[str]] = defaultdict(list)
         self._places: list[_Place[J, R]] = []
-        self._queue = JobQueue(job for job in jobs if is_open(store.rows.get(job.id)))
+        self._queue = JobQueue(job for job in jobs if is_open(self._row(job)))
         self._counts = _RowCounts()
         self._alike: dict[Hashable, list[J]] = defaultdict(list)
         """Jobs that wait for the same situation."""
         earlier: list[JobTurn] = []
         tried: set[Hashable] = set()
         for job in jobs:
-            situation, row = job.situation, store.rows.get(job.id)
+            situation, row = job.situation, self._row(job)
             self._alike[situation].append(job)
             self._counts.count(row)
             if row is not None and not is_open(row):
@@ -298,8 +299,8 @@ class _Batch(Generic[J, R]):
 
     def run(self) -> None:
         self._tell(self.progress)
-        for id_, job in self._jobs.items():
-            if (row := self._store.rows.get(id_)) is not None:
+        for job in self._jobs.values():
+            if (row := self._row(job)) is not None:
                 self._give_up_like(job, row)
         while self._goes_on() or any(place.job for place in self._places):
             while self._goes_on() and len(self._places) < self._executor.count:
@@ -307,6 +308,11 @@ class _Batch(Generic[J, R]):
             if self._goes_on():
                 self._hand_out()
             self._wait()
+
+    def _row(self, job: J) -> R | None:
+        """Its row; of several, one for which it must run again, if there is any."""
+        rows = [self._store.rows.get(each) for each in job.row_ids]
+        return next(filter(is_open, rows), rows[0])
 
     def close(self) -> None:
         for place in self._places:
@@ -421,7 +427,7 @@ class _Batch(Generic[J, R]):
                 return
         attempts = len(failures) + (row.error is None)
         self._newest = replace(row, attempts=attempts, failed_attempts=tuple(failures))
-        self._counts.count(self._store.rows.get(job.id), -1)
+        self._counts.count(self._row(job), -1)
         self._counts.count(self._newest)
         self._store.append(self._newest)
         self._ran += 1

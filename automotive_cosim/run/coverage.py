@@ -74,7 +74,7 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
         return found
     jobs: dict[str, TrialSetup] = {}
     try:
-        jobs |= {job.id: job for job in make_plan(manifest["plan"]).jobs()}
+        jobs |= make_plan(manifest["plan"]).trials_by_id()
         problem = _drift(manifest, rows, jobs)
     except UserError as error:
         problem = " ".join(str(error).split())

@@ -36,6 +36,16 @@ class DriveSetup(DriveSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVa
     """One agent on one drive, by name; the same setup gives the same trace."""
 
     limits: Limits = field(default_factory=lambda: Limits().of_drives)
+    car: int = 0
+    """Its number in its fleet, to which also its seed has been counted."""
+
+    @property
+    def cars(self) -> Sequence[DriveSetup]:
+        return [replace(self, car=number, seed=self.seed + number) for number in range(self.settings.cars or 1)]
+
+    @property
+    def wall_s(self) -> float:
+        return self.limits.longest_s * (self.settings.cars or 1)
 
     @property
     def in_scenario(self) -> str:
@@ -49,8 +59,8 @@ class DriveSetup(DriveSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVa
 
     @property
     def split(self) -> Split:
-        """The public set that it belongs to, by its seed."""
-        return split_of_seed(self.seed)
+        """The public set that it belongs to, by its seed; of a fleet's car, by the fleet's."""
+        return split_of_seed(self.seed - self.car)
 
     @property
     def kind(self) -> Hashable:
@@ -59,16 +69,17 @@ class DriveSetup(DriveSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVa
 
     @property
     def instance(self) -> tuple[Hashable, ...]:
-        return self.family, self.in_scenario, self.settings, self.seed, self.repeat
+        return self.family, self.in_scenario, self.settings, self.seed, self.repeat, self.car
 
     @property
     def id(self) -> str:
         scenario = [self.scenario] if self.scenario else []
-        return self.id_of(self.family, rest=(*scenario, *self.settings.tags))
+        number = [f"car{self.car}"] if self.car else []
+        return self.id_of(self.family, rest=(*scenario, *self.settings.tags, *number))
 
     def planned(self) -> DriveTrialRow:
         season = family_named(self.family).season
-        return DriveTrialRow(**self.named, family=self.family, season=season, settings=self.settings)
+        return DriveTrialRow(**self.named, family=self.family, season=season, settings=self.settings, car=self.car)
 
     def started(self, simulations: Simulations, agent: Agent, observer: Observer) -> DriveSession:
         return self.begin(simulations, agent.channels, observer)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from dataclasses import dataclass
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
 from automotive_cosim.drives.elsewhere import name_of
@@ -11,6 +11,7 @@ from automotive_cosim.drives.harm import Harm
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
+from automotive_cosim.errors import NoRoomError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.run.row import InColumns
 from automotive_cosim.run.trial_row import TrialRow
@@ -27,6 +28,8 @@ class DriveTrialRow(TrialRow):
     """Country at departure; empty if the place is unknown, and in earlier rows."""
     settings: Annotated[DriveSettings, InColumns("set")] = AS_SCRIPTED
     """What was set otherwise than the family's script has it."""
+    car: int = 0
+    """Its number in its fleet, to which also its seed has been counted."""
     score: Annotated[Score | None, InColumns("score")] = None
     """None without a judgement."""
     value: float | None = None
@@ -60,7 +63,7 @@ class DriveTrialRow(TrialRow):
     @property
     def instance(self) -> tuple[Hashable, ...]:
         """What two contestants must share to be compared."""
-        return self.family, self.scenario, self.settings, self.seed, self.repeat
+        return self.family, self.scenario, self.settings, self.seed, self.repeat, self.car
 
     @property
     def outcome(self) -> bool | None:
@@ -79,3 +82,31 @@ class DriveTrialRow(TrialRow):
             return ()
         lost = [event.kind for event in self.events if event.outcome.counts and not event.outcome.is_credited]
         return (*dict.fromkeys(lost), *(["nuisances"] if self.score.nuisances else []))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FleetRow(DriveTrialRow):
+    """What a fleet comes to: the row of its first car, and those of all, which are what is stored."""
+
+    cars: Sequence[TrialRow]
+
+    @classmethod
+    def of(cls, cars: Sequence[TrialRow]) -> FleetRow:
+        """That of a fleet; its error is the first that may not recur."""
+        first = {each.name: getattr(cars[0], each.name) for each in fields(DriveTrialRow)}
+        failed = ((each.error, each.error_kind) for each in cars if each.error is not None)
+        why, kind = next((each for each in failed if each[1] != NoRoomError.__name__), (None, None))
+        return cls(**first | {"cars": cars, "error": why, "error_kind": kind})
+
+    @property
+    def stored(self) -> Sequence[TrialRow]:
+        """The cars' rows, each with its part of the wall time."""
+        took_s, tries, failed = self.wall_seconds / len(self.cars), self.attempts, self.failed_attempts
+        return [
+            replace(each, wall_seconds=took_s, attempts=tries, failed_attempts=failed)
+            for each in reversed(self.cars)
+        ]
+
+    @property
+    def has_succeeded(self) -> bool:
+        return all(each.has_succeeded for each in self.cars)

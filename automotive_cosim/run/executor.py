@@ -27,6 +27,11 @@ class Job(ABC):
         """Id of its row, which can be a file name."""
 
     @property
+    def row_ids(self) -> Sequence[str]:
+        """Ids of all rows that it makes, its own first."""
+        return (self.id,)
+
+    @property
     @abstractmethod
     def simulation(self) -> tuple[str, int]:
         """The warm simulation that it starts from; a worker runs the jobs of one simulation in a row."""

@@ -130,13 +130,14 @@ def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:
     signals: Mapping[str, Any] = {}
     commands: Mapping[str, Any] = {}
     for each in moments:
+        before, signals = signals, dict(each.signals)
         told: Any = {
             "context": None,
-            "signals": _changes(signals, each.signals),
+            "signals": _changes(before, signals),
             "commands": _changes(commands, each.commands),
         }
         bare.append(replace(each, **told))
-        signals, commands = each.signals, each.commands
+        commands = each.commands
     return tuple(bare)
 
 

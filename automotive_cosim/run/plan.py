@@ -198,6 +198,10 @@ class Plan(EvaluationSettings):
         jobs = {job.id: job for job in every if self.split in (BOTH, HIDDEN, job.split)}
         return tuple(sorted(jobs.values(), key=_place))
 
+    def trials_by_id(self) -> dict[str, TrialSetup]:
+        """Every trial, each car of a fleet by itself."""
+        return {car.id: car for job in self.jobs() for car in job.cars}
+
     def most_runs(self) -> int:
         """How many runs it has at most, those of ``trials`` left out, without unfolding it."""
         lists = (self.agents, self.models, [*self._placed(), *self._driven()], self.seeds, *lists_of(self).values())

@@ -91,7 +91,7 @@ def recorded(folder: Path, trial: str = "") -> Recorded:
     rows = read_trials(folder)
     name = the_one(rows, trial, folder, unit_of(manifest["plan"]))
     plan = make_plan(manifest["plan"])
-    job = next((job for job in plan.jobs() if job.id == name), None)
+    job = plan.trials_by_id().get(name)
     row = rows[name]
     if job is None:
         raise UserError(

@@ -9,7 +9,7 @@ pydantic does both: it reads 28 000 rows a second, which is faster than ``json``
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Generic, TypeVar, get_type_hints
 
@@ -49,6 +49,11 @@ class JobRow:
     attempts: Volatile[int] = 1
     failed_attempts: Volatile[tuple[str, ...]] = ()
     """Kind and message of the error of each failed attempt."""
+
+    @property
+    def stored(self) -> Sequence[JobRow]:
+        """Itself; of a job that makes several rows, all of them, that with the job's id last."""
+        return (self,)
 
     @property
     def has_succeeded(self) -> bool:

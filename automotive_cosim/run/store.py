@@ -105,14 +105,15 @@ class Store(Generic[R]):
         self._lines = lines
 
     def append(self, row: R) -> None:
-        """Adds its line and waits until it is on the disk.
+        """Adds its line, or lines, and waits until they are on the disk.
 
         Raises UserError: it cannot be written, e.g. because the disk is full; earlier lines are kept."""
         try:
-            add_line(self._lines, json.dumps(as_json(row), ensure_ascii=False), lasting=True)
+            for each in row.stored:
+                add_line(self._lines, json.dumps(as_json(each), ensure_ascii=False), lasting=True)
+                self.rows[each.id] = cast("R", each)
         except OSError as error:
             raise cannot_write(self.folder, error) from error
-        self.rows[row.id] = row
 
 
 @contextmanager

@@ -25,9 +25,9 @@ from automotive_cosim.drives.specification import MOST_STEPS
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer, Observers
-from automotive_cosim.episode.session import JudgedSession, play
+from automotive_cosim.episode.session import JudgedSession, TakesTime, driven, playing
 from automotive_cosim.episode.specification import End
-from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.errors import InfrastructureError, TrafficError
 from automotive_cosim.interface.trace import canonical
 from automotive_cosim.models import ModelReply
 from automotive_cosim.run.executor import Job
@@ -242,6 +242,15 @@ class TrialSetup(Job):
     def planned(self) -> TrialRow:
         """Its row, as far as it is known before it runs."""
 
+    @property
+    def cars(self) -> Sequence[TrialSetup]:
+        """Itself; of a fleet the trial of every car, its own first. Each has a row."""
+        return (self,)
+
+    @property
+    def row_ids(self) -> Sequence[str]:
+        return [car.id for car in self.cars]
+
     @abstractmethod
     def started(self, simulations: Simulations, agent: Agent, observer: Observer) -> JudgedSession:
         """Its session, at the instant at which the agent takes over; whoever asks for it closes it.
@@ -341,51 +350,82 @@ def run_trial(
         UserError: something in the trial does not exist or is invalid; no observer has seen the agent take over.
         KeyboardInterrupt: passed on after the observers have received the row so far.
     """
-    session: JudgedSession | None = None
-    answers = Answers(agent, trial.conditions)
-
-    def over(end: End, error: InfrastructureError | None = None) -> TrialRow:
-        row, told = trial.row(session, end, answers), None if session is None else trial.told(session)
-        if error is not None:
-            row = replace(row, error=str(error), error_kind=type(error).__name__)
-        for observer in observers:
-            observer.finished(row, told)
-        return row
-
+    run = TrialRun(trial, agent, observers)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
         try:
-            session = trial.started(own, agent, Observers(observers))
+            session = trial.started(own, agent, run.observer)
             ends.callback(session.close)
-            end = _played(session, agent, answers, observers, wall_s)
+            return driven(run.playing(session, wall_s))
         except InfrastructureError as error:
-            return over(End.ERROR, error)
+            return run.over(End.ERROR, error)
         except KeyboardInterrupt:
-            over(End.INTERRUPTED)
+            run.over(End.INTERRUPTED)
             raise
-        return over(end)
 
 
-def _played(
-    session: JudgedSession, agent: Agent, answers: Answers, observers: Sequence[TrialObserver], wall_s: float
-) -> End:
-    """Lets the agent act until the session is over, and returns why it is."""
+class TrialRun:
+    """A trial that is run: who acts, who observes, and what comes of it."""
 
-    def stepped(session: JudgedSession, seen: Sequence[Element]) -> None:
-        shot = Shot(session, session.steps[-1], tuple(seen), answers.stages())
+    def __init__(self, trial: TrialSetup, agent: Agent, observers: Sequence[TrialObserver] = ()) -> None:
+        """Nothing has begun; arguments as of ``run_trial``."""
+        self.trial, self.agent = trial, agent
+        self.observer = Observers(observers)
+        """Notifies all of what happens on the road."""
+        self._observers = [*observers]
+        self._answers = Answers(agent, trial.conditions)
+        self._session: JudgedSession | None = None
+
+    def over(self, end: End, error: InfrastructureError | None = None) -> TrialRow:
+        """The row, of which the observers are told; with an error, it says which."""
+        session = self._session
+        row = self.trial.row(session, end, self._answers)
+        told = None if session is None else self.trial.told(session)
+        if error is not None:
+            row = replace(row, error=str(error), error_kind=type(error).__name__)
+        for observer in self._observers:
+            observer.finished(row, told)
+        return row
+
+    def playing(
+        self, session: JudgedSession, wall_s: float, observers: Sequence[TrialObserver] = ()
+    ) -> TakesTime[TrialRow]:
+        """Lets the agent act until the session is over; the row, which may be that of an error of its own.
+
+        Args:
+            observers: more of them, from now on.
+
+        Raises:
+            TrafficError: the traffic simulation failed.
+        """
+        self._session = session
+        self._observers += observers
+        try:
+            end = yield from self._played(session, wall_s)
+        except TrafficError:
+            raise
+        except InfrastructureError as error:
+            return self.over(End.ERROR, error)
+        return self.over(end)
+
+    def _played(self, session: JudgedSession, wall_s: float) -> TakesTime[End]:
+        agent, answers, observers = self.agent, self._answers, self._observers
+
+        def stepped(session: JudgedSession, seen: Sequence[Element]) -> None:
+            shot = Shot(session, session.steps[-1], tuple(seen), answers.stages())
+            for observer in observers:
+                observer.stepped(shot)
+
+        agent.reset(session.observation.goal)
+        if isinstance(agent, Privileged) and isinstance(session, Episode):
+            agent.brief(session.instance, drawn=session.world.cockpit.drawn, branch=session.branch)
+        first = Shot(session, session.steps[0])
         for observer in observers:
-            observer.stepped(shot)
-
-    agent.reset(session.observation.goal)
-    if isinstance(agent, Privileged) and isinstance(session, Episode):
-        agent.brief(session.instance, drawn=session.world.cockpit.drawn, branch=session.branch)
-    first = Shot(session, session.steps[0])
-    for observer in observers:
-        observer.begun(session, first)
-    end = play(session, agent, stepped, answers.took_s, wall_s)
-    if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
-        answers.stages(finished=False)
-    if isinstance(agent, Learner) and isinstance(session, Episode) and session.verdict is not None:
-        agent.learn(session.verdict.success)
-    session.drive_on()
-    return end
+            observer.begun(session, first)
+        end = yield from playing(session, agent, stepped, answers.took_s, wall_s)
+        if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
+            answers.stages(finished=False)
+        if isinstance(agent, Learner) and isinstance(session, Episode) and session.verdict is not None:
+            agent.learn(session.verdict.success)
+        session.drive_on()
+        return end

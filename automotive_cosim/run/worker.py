@@ -12,7 +12,10 @@ from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.formats.layout import PICTURES
 from automotive_cosim.formats.writing import beneath
 from automotive_cosim.run.budget import Metered, MeterHandle
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.drive_row import FleetRow
 from automotive_cosim.run.executor import Runner, failed_by
+from automotive_cosim.run.fleet import run_fleet
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
@@ -20,7 +23,7 @@ from automotive_cosim.run.phase import PhaseObserver
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.trial import Limits, TrialSetup, run_trial
+from automotive_cosim.run.trial import Limits, TrialRun, TrialSetup, run_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
@@ -48,8 +51,30 @@ def run_job(
     fork_server: ForkServer,
     meter: MeterHandle | None = None,
 ) -> TrialRow:
-    """Runs one trial with its agent, as ``run_with`` does. Raises OSError: trace or pictures cannot be written."""
-    return run_with(agent_of(job, fork_server, meter), job, folder, pictures, simulations)
+    """Runs one trial with its agent, as ``run_with`` does, or all drives of a fleet, each with its own.
+
+    Raises:
+        OSError: trace or pictures cannot be written.
+    """
+    agents = [agent_of(car, fork_server, meter) for car in job.cars]
+    if not isinstance(job, DriveSetup) or not job.settings.cars:
+        return run_with(agents[0], job, folder, pictures, simulations)
+    try:
+        with ExitStack() as ends:
+            recorders = [ends.enter_context(_recorded(car, folder, pictures)) for car in job.cars]
+            agents_in = [ends.enter_context(agent) for agent in agents]
+            runs = [
+                TrialRun(car, agent, observers)
+                for car, agent, (_, observers) in zip(job.cars, agents_in, recorders, strict=True)
+            ]
+            kept = None if pictures is Pictures.NONE else folder
+            rows = run_fleet(job.cars, runs, simulations, kept)
+    except Exception as error:  # must not end the evaluation; it is counted and listed
+        ended: TrialRow = failed_by(job, error)
+        return ended
+    for (recorder, _), row in zip(recorders, rows, strict=True):
+        _keep(recorder, row, folder, pictures)
+    return FleetRow.of(rows)
 
 
 def run_with(
@@ -67,22 +92,37 @@ def run_with(
         simulations: warm simulations to use.
         observers: notified before anything is kept.
 
-    Raises OSError: trace or pictures cannot be written."""
-    kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
-    recorder, everyone = Recorder(job, kept), [*observers, PhaseObserver()]
+    Raises:
+        OSError: trace or pictures cannot be written.
+    """
     try:
-        with ExitStack() as ends:
-            everyone.insert(-1, ends.enter_context(closing(recorder)))
-            if kept is not None:
-                everyone.append(ends.enter_context(closing(RoadRecorder(kept, job.about))))
-            row = run_trial(job, ends.enter_context(agent), everyone, simulations=simulations)
+        with _recorded(job, folder, pictures, observers) as (recorder, everyone), agent as acting:
+            row = run_trial(job, acting, everyone, simulations=simulations)
     except Exception as error:  # must not end the evaluation; it is counted and listed
         ended: TrialRow = failed_by(job, error)
         return ended
+    _keep(recorder, row, folder, pictures)
+    return row
+
+
+@contextmanager
+def _recorded(
+    job: TrialSetup, folder: Path, pictures: Pictures, observers: Sequence[TrialObserver] = ()
+) -> Iterator[tuple[Recorder, Sequence[TrialObserver]]]:
+    """What records a trial, and all that observe it."""
+    kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
+    with ExitStack() as ends:
+        recorder = ends.enter_context(closing(Recorder(job, kept)))
+        everyone = [*observers, recorder, PhaseObserver()]
+        if kept is not None:
+            everyone.append(ends.enter_context(closing(RoadRecorder(kept, job.about))))
+        yield recorder, everyone
+
+
+def _keep(recorder: Recorder, row: TrialRow, folder: Path, pictures: Pictures) -> None:
     recorder.keep_in(folder)
     if pictures is Pictures.FAILURES and row.has_succeeded:
         recorder.discard()
-    return row
 
 
 def agent_of(

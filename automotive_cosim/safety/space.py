@@ -26,7 +26,7 @@ SearchPoint = Mapping[str, FactorValue]
 PointKey = tuple[tuple[str, FactorValue], ...]
 
 CONDITIONS = tuple(each.name for each in TABLE)
-SETTINGS = tuple(entry.name for entry in fields(DriveSettings))
+SETTINGS = tuple(entry.name for entry in fields(DriveSettings) if entry.name != "cars")
 TRIAL = ("task", "half", "drive", "scenario", "seed", "held_out")
 FACTORS = (*TRIAL, *CONDITIONS, *SETTINGS)
 """Every factor that a space may have."""

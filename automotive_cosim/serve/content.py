@@ -18,19 +18,21 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, PICTURES, ROAD, WATCHED, PictureOf, road_view, screenshot, sound
 from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.report.hearing import can_sound, sounded, utterances
-from automotive_cosim.report.page import PARTS
+from automotive_cosim.report.page import PARTS as VERDICT_PARTS
 from automotive_cosim.run.attribution import path_of, read_effects
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.effect import ActEffect
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.extensions import kind_of
+from automotive_cosim.run.fleet_record import fleets_in
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, trace_file
 from automotive_cosim.run.trial_folder import READ, is_trial, read_steps, read_trial, trace_of
 from automotive_cosim.safety.page import PAGE
+from automotive_cosim.serve.fleets import PARTS
 from automotive_cosim.serve.observers import StudyObservers
 from automotive_cosim.serve.records import NotHereError, RecordEntry, RecordFolders
 
@@ -90,7 +92,7 @@ class Content:
             effects = read_effects(path_of(folder) if episode is None else path_of(entry.folder, episode))
             return shared | _drive(row, result.get("timeline") or {}, effects)
         return shared | {
-            "parts": dict(PARTS),
+            "parts": dict(VERDICT_PARTS),
             "verdict": result.get("verdict"),
             "timeline": result.get("timeline", ()),
             "path": result.get("path", ()),
@@ -198,12 +200,17 @@ class Content:
         return {"halves": found}
 
     def study(self, name: str, part: str, *items: str) -> Json:
-        """A part of a study, of those that its kind has for pages.
+        """A part of a study, of those that its kind has for pages, or of an evaluation's fleets.
 
-        Raises UserError: it is not here, or cannot be read."""
-        folder = self._study(name)
-        kind = kind_of(read_manifest(folder)["plan"])
-        shown = None if kind is None else kind.shown(part, folder, *items)
+        Raises:
+            UserError: it is not here, or cannot be read.
+        """
+        entry = self.records.entry(name)
+        kind = kind_of(read_manifest(entry.folder)["plan"]) if entry.is_evaluation else None
+        if kind is not None:
+            shown = kind.shown(part, entry.folder, *items)
+        else:
+            shown = PARTS[part](entry.folder, *items) if entry.is_evaluation and part in PARTS else None
         if shown is None:
             raise NotHereError(f"record {name!r} has no such page")
         return shown
@@ -285,6 +292,7 @@ class Content:
             "is_search": (entry.folder / PAGE).is_file(),
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
+            "fleets": [fleet for fleet, _ in fleets_in(entry.folder)],
             "rows": self._drive_rows(entry, rows.values()),
         }
 

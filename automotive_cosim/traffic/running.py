@@ -6,12 +6,14 @@ name, so nothing here knows what is called.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from hashlib import sha256
 from typing import Protocol, TypeVar
 
+from automotive_cosim.contracts import RoadSnapshot
 from automotive_cosim.traffic.convoy import Convoy
 from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.records import make_seen
 from automotive_cosim.traffic.sumo import LibSumo, load_library
 from automotive_cosim.traffic.world import World
 
@@ -72,6 +74,21 @@ class Running:
         for each in self.watchers:
             each.after_step()
         self._beat()
+
+
+def seen(running: Running, cars: Sequence[str]) -> RoadSnapshot:
+    """Those of some vehicles that are on the road now."""
+    sumo, here = running.sumo, frozenset(running.sumo.vehicle_ids())
+    of, found = sumo.vehicle, [car for car in cars if car in here]
+    sizes = ((of.getVehicleClass(car), of.getLength(car), of.getWidth(car)) for car in found)
+    return RoadSnapshot(
+        sumo.time(),
+        tuple(
+            make_seen(car, *size, *sumo.position(car), sumo.angle(car), sumo.speed(car), of.getSignals(car))
+            for car, size in zip(found, sizes, strict=True)
+        ),
+        (),
+    )
 
 
 def fingerprint(running: Running) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from functools import lru_cache
 from operator import attrgetter
+from sys import intern
 from typing import Any, TypeAlias
 
 from automotive_cosim.contracts import (
@@ -64,7 +65,8 @@ def unpack_state(packed: Packed) -> DrivingState:
     light = ahead[_LIGHT_AT]
     ahead[_LIGHT_AT] = light and make_light(*light)
     ahead[_ROUTE_AT], ahead[_SLOW_AT] = _same(ahead[_ROUTE_AT]), _same(ahead[_SLOW_AT])
-    row[_ROAD_AT] = make_road(*row[_ROAD_AT])
+    road: Packed = tuple(intern(each) if type(each) is str else each for each in row[_ROAD_AT])
+    row[_ROAD_AT] = make_road(*road)
     row[_AHEAD_AT] = make_ahead(*ahead)
     others: Packed = tuple(other and make_other(*other) for other in around[:_OTHERS])
     row[_AROUND_AT] = make_around(*others, *around[_OTHERS:])
@@ -73,8 +75,9 @@ def unpack_state(packed: Packed) -> DrivingState:
 
 @lru_cache(maxsize=512)
 def _same(edges: Packed) -> Packed:
-    """The same route or traffic news as before, if they are: of what a drive keeps, copies of them were a third."""
-    return edges
+    """The same route or traffic news as before, if they are: of what a drive keeps, copies of them were a third.
+    The names in all of them are the same, too."""
+    return tuple(intern(each) if isinstance(each, str) else (intern(each[0]), *each[1:]) for each in edges)
 
 
 def pack_advance(advance: Advance) -> Packed:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,11 @@ from automotive_cosim.cockpit.signals import (
     CABIN,
     CATALOGUE,
     DRIVE,
+    DRIVER,
     HVAC,
     LIGHTS,
     MOTION,
+    OF_ATTENTION,
     TYRE,
     LeafKind,
     Signal,
@@ -119,9 +122,32 @@ def test_unknown_path_is_refused_with_a_suggestion() -> None:
 def test_snapshot_is_json_and_a_difference_lists_what_changed() -> None:
     signals = Signals({LIGHTS.HAZARD.path: True})
     before = signals.snapshot()
-    assert json.loads(json.dumps(before)) == before
+    assert json.loads(json.dumps(before.as_dict())) == before
     signals[HVAC.FAN_SPEED] = 80.0
     assert difference(before, signals.snapshot()) == {HVAC.FAN_SPEED.path: (30.0, 80.0)}
+
+
+@pytest.mark.parametrize("distraction", [None, 0.0, 40.0])
+def test_a_snapshot_is_the_dict_of_all_values_in_a_sixth_of_the_room(distraction: float | None) -> None:
+    signals = Signals({DRIVER.DISTRACTION.path: distraction, DRIVER.FATIGUE.path: distraction})
+    held = {path: signal.default for path, signal in CATALOGUE.items()}
+    held |= dict.fromkeys(OF_ATTENTION, distraction) if distraction is not None else {}
+    told = {path: value for path, value in held.items() if path not in OF_ATTENTION or value is not None}
+    first = signals.snapshot()
+    assert first == told == dict(first) == first.as_dict()
+    assert (list(first), len(first)) == (list(told), len(told))
+    assert [path in first for path in CATALOGUE] == [path in told for path in CATALOGUE]
+    assert [first.get(path) for path in CATALOGUE] == list(map(told.get, CATALOGUE))
+    signals[MOTION.SPEED] = 50.0
+    then = signals.snapshot()
+    assert then != first
+    assert difference(first, then) == {MOTION.SPEED.path: (0.0, 50.0)}
+    assert then._commanded is first._commanded
+    room = sum(map(sys.getsizeof, (then, then._others)))
+    assert 6 * room < sys.getsizeof(then.as_dict())
+    signals[HVAC.FAN_SPEED] = 80.0
+    assert first[HVAC.FAN_SPEED.path] == 30.0
+    assert signals.snapshot()[HVAC.FAN_SPEED.path] == 80.0
 
 
 def test_copies_are_independent() -> None:

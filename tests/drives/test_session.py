@@ -35,7 +35,7 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watchers import READS, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.episode.session import Actor, play
+from automotive_cosim.episode.session import Actor, driven, play, playing
 from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.spaces import GOAL_BYTES
@@ -409,7 +409,7 @@ def test_an_agent_that_breaks_down_leaves_the_drive_to_itself(begin: Begin) -> N
     session = begin(120.0)
     session.step(Action(ActionType.WAIT, seconds=5))
     failed_s = round(session.seconds, 1)
-    session.give_up("its process has ended")
+    driven(session.ending(End.AGENT_FAILED, "its process has ended"))
     assert session.end is End.AGENT_FAILED
     assert session.seconds == pytest.approx(120.0)
     assert session.judgement is not None
@@ -520,7 +520,7 @@ def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
         assert isinstance(agent, Thinker)
         asked.append((session.steps[-2].action, sum(stage.reply is not None for stage in agent.stages)))
 
-    play(session, agent, count)
+    driven(playing(session, agent, count))
     assert session.judgement is not None
     assert score(session.judgement, session.seconds).met > 0
     waited = {calls for before, calls in asked if before is not None and before.action_type is ActionType.WAIT}
@@ -545,6 +545,6 @@ def test_the_answer_is_the_one_that_drivers_give_in_tasks() -> None:
 @pytest.mark.slow
 def test_thinking_takes_time_on_the_road(begin: Begin) -> None:
     session = begin(60.0)
-    session.think(20.0)
+    driven(session.thinking(20.0))
     session.step(Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED))
     assert session.seconds == pytest.approx(21.0)

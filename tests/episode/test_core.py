@@ -16,7 +16,7 @@ from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.session import Session, play
+from automotive_cosim.episode.session import Session, driven, play, playing
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, Seeds, SeedSource, SessionSetup
 from automotive_cosim.errors import (
@@ -131,7 +131,7 @@ def test_where_the_first_road_is_full_another_trip_is_tried():
 def test_the_loop_steps_refuses_and_tells_each_step(begin):
     seen = []
     episode = begin()
-    end = play(episode, Acts(WAIT, ActionError("no JSON"), DONE), lambda session, was: seen.append(was))
+    end = driven(playing(episode, Acts(WAIT, ActionError("no JSON"), DONE), lambda session, was: seen.append(was)))
     assert end is episode.end is End.DECLARED
     assert [step.feedback.code for step in episode.steps][2] is FeedbackCode.MALFORMED
     assert len(seen) == len(episode.steps) - 1 == 3

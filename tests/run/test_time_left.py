@@ -47,6 +47,10 @@ class Planned:
     wall_s: float = 1e9
     warm_up_weight: float = 1.0
 
+    @property
+    def row_ids(self) -> tuple[str, ...]:
+        return (self.id,)
+
     def planned(self) -> JobRow:
         return JobRow(id=self.id)
 

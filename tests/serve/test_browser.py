@@ -523,7 +523,7 @@ def test_the_cars_of_a_fleet_are_on_one_map_and_each_opens(
     write_adoption(tmp_path / "town")
     browser = serving(tmp_path)
     page = opened(browser, f"#/fleet/{browser('/api/runs').json['records'][0]['id']}")
-    expect(page.locator(".about")).to_contain_text("2 equipped cars on the road")
+    expect(page.locator(".about")).to_contain_text("2 cars on the road")
     expect(page.locator("tbody tr")).to_have_count(2)
     expect(page.locator("tbody tr").first).to_contain_text(HOSTILE)
     expect(page.locator("tbody td.no")).to_have_text("ValueError: boom")

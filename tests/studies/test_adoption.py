@@ -14,6 +14,7 @@ import pytest
 from automotive_cosim.contracts import DrivingState, Observation, Reroute, RouteOption, SlowDown
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.run.executor import tried
+from automotive_cosim.run.fleet_record import read_fleet
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import FORMAT
 from automotive_cosim.serve.records import NotHereError
@@ -25,9 +26,9 @@ from automotive_cosim.studies.adoption.adoption import (
     Cohort,
     ShareLog,
     ShareOutcome,
+    fleet_id,
     run_seed,
 )
-from automotive_cosim.studies.adoption.fleets import fleet_id, read_fleet
 from automotive_cosim.studies.adoption.page import answer, charts, effects, fleets, gone, warnings
 from automotive_cosim.studies.adoption.served import cars, shares
 from automotive_cosim.studies.calls import chosen, town
@@ -279,7 +280,7 @@ def test_an_assistants_errors_are_those_of_one_car(
     plan = {"format": FORMAT, "plan": replace(PLAN, seeds=(1,)).as_json()}
     (tmp_path / "manifest.json").write_text(json.dumps(plan))
     (tmp_path / "episodes.jsonl").write_text(json.dumps(as_json(row)) + "\n")
-    assert shares(tmp_path)["fleets"] == [{"id": "seed1-100", "running": False}]
+    assert shares(tmp_path)["fleets"] == [{"id": "seed1-100", "words": "seed 1, 100 %", "running": False}]
     assert len(cars(tmp_path, "seed1-100")["cars"]) == len(row.shares[0].cars)
     with pytest.raises(NotHereError, match="seed9"):
         cars(tmp_path, "seed9-100")

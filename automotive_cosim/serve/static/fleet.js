@@ -1,4 +1,4 @@
-// The equipped cars of a study of adoption, all on one map and each by itself, as they drive or have driven.
+// The cars of a fleet, all on one map and each by itself, as they drive or have driven: of an evaluation of drives, or of a study of adoption.
 
 import { ask, counted, h, seconds, speedInWords } from "./dom.js";
 import { RoadRecord, RoadView } from "./road.js";
@@ -6,15 +6,15 @@ import { RoadRecord, RoadView } from "./road.js";
 const POLL_MS = 1000;
 const SPEEDS = [1, 4, 16, 64];
 const MOST = 400;
-const words = (fleet) => fleet.replace(/^seed(\d+)-(.*)$/, "seed $1, $2 %");
 
 export async function fleetPage(query, id, fleet, car) {
   let study = await ask(`/api/studies/${id}`);
   const known = () => study.fleets.map((each) => each.id);
+  const words = (name) => study.fleets.find((each) => each.id === name)?.words ?? name;
   const shown = fleet ?? study.fleets.find((each) => each.running)?.id ?? known().at(-1);
   const home = `#/fleet/${id}/${encodeURIComponent(shown ?? "")}`;
-  const head = [h("h1", {}, car ?? study.name), h("p", { class: "muted" }, car ? h("a", { href: home }, `${study.name}, ${words(shown)}`) : `${study.agent} in ${study.scenario}; ${study.done} of ${counted(study.planned, "seed")} done. Each car on the map has the assistant.`)];
-  if (!shown) return { title: study.name, content: [...head, h("p", { class: "card" }, "No car has the assistant yet: the traffic is warming up, or share 0 is driven.")], ready: () => setTimeout(() => location.hash.startsWith(`#/fleet/${id}`) && dispatchEvent(new Event("hashchange")), 3000) };
+  const head = [h("h1", {}, car ?? study.name), h("p", { class: "muted" }, car ? h("a", { href: home }, `${study.name}, ${words(shown)}`) : study.about)];
+  if (!shown) return { title: study.name, content: [...head, h("p", { class: "card" }, "No car to show yet: the traffic is warming up, or share 0 of a study is driven.")], ready: () => setTimeout(() => location.hash.startsWith(`#/fleet/${id}`) && dispatchEvent(new Event("hashchange")), 3000) };
 
   const base = `/api/runs/${id}/episodes/${encodeURIComponent(shown)}`;
   const road = new RoadRecord();
@@ -23,18 +23,19 @@ export async function fleetPage(query, id, fleet, car) {
   const poll = async () => {
     road.add((await ask(`${base}/road?skip=${road.lines}`)).lines);
     study = await ask(`/api/studies/${id}`);
-    if (!running() && !rows.size) rows = new Map((await ask(`/api/studies/${id}/cars/${encodeURIComponent(shown)}`)).cars.map((row) => [row.car, row]));
+    if (!running() && rows.size < road.vehicles.size) rows = new Map((await ask(`/api/studies/${id}/cars/${encodeURIComponent(shown)}`)).cars.map((row) => [row.name, row]));
   };
   await poll();
 
-  const choice = h("select", { "aria-label": "Share" }, known().map((each) => h("option", { value: each, selected: each === shown }, words(each))));
+  const choice = h("select", { "aria-label": "Fleet" }, known().map((each) => h("option", { value: each, selected: each === shown }, words(each))));
   choice.addEventListener("change", () => { location.hash = `#/fleet/${id}/${encodeURIComponent(choice.value)}`; });
   const canvas = h("canvas", { tabindex: 0, role: "img", "aria-label": "The equipped cars from above" });
-  const open = (name) => { location.hash = `${home}/${encodeURIComponent(name)}`; };
+  const place = (name) => (road.trials[name] ? `#/run/${id}/${encodeURIComponent(road.trials[name])}` : `${home}/${encodeURIComponent(name)}`);
+  const open = (name) => { location.hash = place(name); };
   const view = new RoadView(canvas, road, (found) => found && found.id !== car && open(found.id));
   Object.assign(view, { follows: null, turns: false, failed: new Set() });
   const about = h("p", { class: "about", role: "status" });
-  const slider = h("input", { type: "range", min: 0, step: 0.1, "aria-label": "Seconds after the warm-up" });
+  const slider = h("input", { type: "range", min: 0, step: 0.1, "aria-label": "Seconds since the beginning" });
   const clock = h("output", { class: "clock" });
   const play = h("button", { type: "button", class: "main" }, "Play");
   const speed = h("select", { "aria-label": "Speed" }, SPEEDS.map((value) => h("option", { value, selected: value === 16 }, `${value}×`)));
@@ -56,9 +57,7 @@ export async function fleetPage(query, id, fleet, car) {
     const count = (name) => String(every.filter((note) => note.car === name).length);
     body.replaceChildren(...names.filter((name) => !car || name === car).sort((a, b) => errors.has(b) - errors.has(a)).slice(0, MOST).map((name) => {
       const row = rows.get(name);
-      const gain = row && row.before_s !== null ? Math.round(row.before_s - row.time_s) : null;
-      return h("tr", {}, h("td", {}, h("a", { href: `${home}/${encodeURIComponent(name)}` }, name)), h("td", {}, row ? `${Math.round(row.time_s)} s${row.arrived ? "" : " so far"}` : "drives"),
-        h("td", {}, gain === null ? "" : `${gain > 0 ? "+" : gain < 0 ? "−" : ""}${Math.abs(gain)} s`), h("td", {}, row ? String(row.reroutes) : ""), h("td", {}, row ? String(row.warnings) : ""), h("td", {}, count(name)), h("td", { class: errors.has(name) ? "no" : "" }, row?.error || errors.get(name) || ""));
+      return h("tr", {}, h("td", {}, h("a", { href: place(name) }, name)), study.columns.map((_, index) => h("td", {}, row ? row.cells[index] : index ? "" : "drives")).flat(), h("td", {}, count(name)), h("td", { class: errors.has(name) ? "no" : "" }, row?.error || errors.get(name) || ""));
     }));
   }
   function show() {
@@ -66,7 +65,7 @@ export async function fleetPage(query, id, fleet, car) {
     clock.textContent = seconds(at);
     view.draw(at);
     const here = view.drawn.find((each) => each.id === car);
-    about.textContent = car ? (here ? speedInWords(here.speed * 3.6, "km/h") : "not on the road now") : `${counted(view.drawn.length, "equipped car")} on the road; red ones have lost the assistant`;
+    about.textContent = car ? (here ? speedInWords(here.speed * 3.6, "km/h") : "not on the road now") : `${counted(view.drawn.length, "car")} on the road; red ones have lost the assistant`;
   }
   const jump = (to) => { at = Math.min(road.end, Math.max(road.begin, to)); show(); };
   function tick(now) {
@@ -91,7 +90,7 @@ export async function fleetPage(query, id, fleet, car) {
   play.addEventListener("click", () => run(!playing));
   slider.addEventListener("input", () => jump(Number(slider.value)));
   const button = (label, action, title) => h("button", { type: "button", onclick: action, title }, label);
-  const heads = ["Car", "Trip", "Gain", "Routes changed", "Warnings", "Asked", "Assistant"];
+  const heads = ["Car", ...study.columns, "Acts", "Assistant"];
   return {
     title: car ?? study.name,
     content: [...head, car ? null : h("div", { class: "filters" }, choice),
@@ -100,7 +99,7 @@ export async function fleetPage(query, id, fleet, car) {
         h("figcaption", {}, about))),
       h("div", { class: "card transport" }, play, h("div", { class: "time-line" }, slider), clock, speed),
       h("h2", {}, "Cars"), h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Cars" }, h("table", {}, h("thead", {}, h("tr", {}, heads.map((name) => h("th", { scope: "col" }, name)))), body)),
-      h("h2", {}, "What was asked"), h("div", { class: "card" }, notes)].filter(Boolean),
+      h("h2", {}, "What was done"), h("div", { class: "card" }, notes)].filter(Boolean),
     ready: () => {
       lists();
       view.whole();

@@ -20,6 +20,7 @@ export class RoadRecord {
     this.vehicles = new Map();
     this.seconds = [];
     this.alone = false;
+    this.trials = {};
     this.baseline = [];
     this.bands = new Map();
     this.areas = new Path2D();
@@ -32,6 +33,7 @@ export class RoadRecord {
     this.lines += lines.length;
     for (const line of lines) {
       if (line.alone) this.alone = true;
+      if (line.cars) this.trials = line.cars;
       if (line.baseline) this.baseline = line.baseline;
       for (const lane of line.lanes ?? []) this.addLane(lane);
       for (const outline of line.junctions ?? []) {

@@ -124,7 +124,7 @@ function drivesTable(id, rows) {
 
 function drivesPage(id, results) {
   const done = results.planned ? `${results.rows.length} of ${counted(results.planned, "drive")} are done` : counted(results.rows.length, "drive");
-  return { title: results.name, content: [h("h1", {}, results.name), searched(results), h("p", { class: "muted" }, done), drivesTable(id, results.rows)] };
+  return { title: results.name, content: [h("h1", {}, results.name), searched(results), h("p", { class: "muted" }, done), results.fleets.length ? h("p", {}, h("a", { class: "pill live", href: `#/fleet/${id}` }, "All cars on one map")) : "", drivesTable(id, results.rows)] };
 }
 
 // The halves of a pair stand in one row, first before second.

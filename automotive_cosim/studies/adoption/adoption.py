@@ -36,12 +36,12 @@ from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.models import ChatModel
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import alone
+from automotive_cosim.run.fleet_record import FAILS, FleetRecord
 from automotive_cosim.run.phase import doing, warming_up
 from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.run.script import read_script
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.wording import KINDS, read_line
-from automotive_cosim.studies.adoption.fleets import FAILS, FleetRecord, fleet_id
 from automotive_cosim.studies.calls import town
 from automotive_cosim.studies.calls.town import CarTrip
 from automotive_cosim.studies.content import StudyContent
@@ -232,6 +232,11 @@ def percent(share: float) -> str:
     return f"{100 * share:.6g}%"
 
 
+def fleet_id(seed: int, share: float) -> str:
+    """The name of a share's folder below ``live``."""
+    return f"seed{seed}-{100 * share:g}"
+
+
 def run_seed(job: AdoptionJob, folder: Path) -> AdoptionRow:
     """Runs all shares of a seed; its row is kept, and where the equipped cars of each share drove."""
     shares = dict.fromkeys((0.0, *(percent / 100 for percent in job.plan.shares)))
@@ -275,7 +280,8 @@ def drive(
         if not (keeps and share):
             return _Drive(job, road, assistant).go(share), road.call(town.trips_of)
         about = {"scenario": job.plan.scenario, "agent": job.plan.agent, "seed": job.seed, "share": share}
-        with closing(FleetRecord(keeps, fleet_id(job.seed, share), road, about)) as record:
+        shapes, look = road.call(town.network_of), partial(road.call, town.seen)
+        with closing(FleetRecord(keeps, fleet_id(job.seed, share), road, shapes, look, about)) as record:
             return _Drive(job, road, assistant, record).go(share), road.call(town.trips_of)
 
 

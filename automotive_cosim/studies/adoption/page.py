@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
+from automotive_cosim.report.fleet import FleetCar, shown_fleet
 from automotive_cosim.report.tables import Table
-from automotive_cosim.report.templates import render
-from automotive_cosim.studies.adoption.adoption import AdoptionStudy, Cohort, EquippedCar, ShareOutcome, percent
-from automotive_cosim.studies.adoption.fleets import DrivenFleet, fleet_id, read_fleet
+from automotive_cosim.run.fleet_record import read_fleet
+from automotive_cosim.studies.adoption.adoption import (
+    AdoptionStudy,
+    Cohort,
+    EquippedCar,
+    ShareOutcome,
+    fleet_id,
+    percent,
+)
 from automotive_cosim.studies.content import ShownStudy
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.reroute.tables import NONE, told_mean
@@ -27,6 +34,8 @@ KINDS = {
     "failed": "its assistant failed",
 }
 """Cars on a map, by how they look."""
+COLUMNS = "Departs, s", "Trip, s", "Gain, s", "Routes changed", "Warnings"
+"""Figures of a car."""
 NOTICED_S = 0.5
 """A gain at the smallest share of less is none of which a part could be gone: our choice."""
 
@@ -61,25 +70,17 @@ def fleets(study: AdoptionStudy) -> tuple[str, dict[str, str]]:
         if row is None or fleet is None:
             continue
         name = f"cars-{fleet_id(row.seed, outcome.share)}.html"
-        cars = [_shown_car(number, car, fleet) for number, car in enumerate(outcome.cars, 1)]
-        left, bottom, right, top = fleet.box_m
-        drawn = {
-            "box": f"{left:.0f} {-top:.0f} {right - left:.0f} {top - bottom:.0f}",
-            "roads": " ".join(map(_path, fleet.roads)),
-            "cars": cars,
-            "dot": round(max(right - left, top - bottom) / 250, 1),
-            "kinds": KINDS,
-        }
-        title = f"{counted(len(cars), 'car')} with the assistant, {percent(outcome.share)} of all, seed {row.seed}"
-        pages[name] = render(
-            "studies/adoption/fleet.html",
-            **drawn,
-            title=title,
+        cars, of_all = list(map(shown_car, outcome.cars)), f"{percent(outcome.share)} of all"
+        last, pages[name] = shown_fleet(
+            fleet,
+            cars,
+            KINDS,
+            COLUMNS,
+            name,
+            title=f"{counted(len(cars), 'car')} with the assistant, {of_all}, seed {row.seed}",
             about=f"{study.plan.agent}, {study.plan.scenario}",
-            failed=outcome.failed,
-            map=render("studies/adoption/map.html", **drawn, page=""),
+            note="Gain: how much sooner the car arrives than at share 0, in a copy of the same traffic.",
         )
-        last = render("studies/adoption/map.html", **drawn, page=name)
         links.append(f'<a href="{name}">{percent(outcome.share)}, {counted(len(cars), "car")}</a>')
     told = (
         f'<h2 id="cars">The cars of seed {row.seed}</h2>\n<p>Each car by itself: {" · ".join(links)}</p>'
@@ -89,10 +90,10 @@ def fleets(study: AdoptionStudy) -> tuple[str, dict[str, str]]:
     return (f"{told}\n{last}" if links else "", pages)
 
 
-def _shown_car(number: int, car: EquippedCar, fleet: DrivenFleet) -> dict[str, object]:
+def shown_car(car: EquippedCar) -> FleetCar:
+    """An equipped car on the map and in the list."""
     gain_s = None if car.before_s is None else car.before_s - car.time_s
     kind = "failed" if car.error else "same" if not gain_s else "sooner" if gain_s > 0 else "later"
-    way = fleet.ways.get(car.car, ())
     told = (
         f"{'arrives' if car.arrived else 'is still on its way'} after {car.time_s:.0f} s and {car.driven_m:.0f} m"
     )
@@ -101,21 +102,9 @@ def _shown_car(number: int, car: EquippedCar, fleet: DrivenFleet) -> dict[str, o
         if gain_s is None
         else f"{_sooner(gain_s)} {'than' if abs(gain_s) >= 0.05 else 'as'} at share 0"
     )
-    return {
-        "number": number,
-        "row": car,
-        "kind": kind,
-        "words": f"{told}, {without}",
-        "gain": NONE if gain_s is None else f"{gain_s:+.0f}",
-        "has_way": len(way) > 1,
-        "way": _path(way),
-        "end": [round(way[-1][0]), round(-way[-1][1])] if way else [],
-        "notes": fleet.notes.get(car.car, ()),
-    }
-
-
-def _path(way: Sequence[tuple[float, float]]) -> str:
-    return "".join(f"{'L' if number else 'M'}{x_m:.0f} {-y_m:.0f}" for number, (x_m, y_m) in enumerate(way))
+    trip, gain = f"{car.time_s:.0f}{'' if car.arrived else ' so far'}", NONE if gain_s is None else f"{gain_s:+.0f}"
+    cells = f"{car.departs_s:.0f}", trip, gain, str(car.reroutes), str(car.warnings)
+    return FleetCar(car.car, kind, f"{told}, {without}", cells, car.error)
 
 
 def mean(study: AdoptionStudy, share: float, of: Of) -> SeedMean | None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.writing import is_being_written
+from automotive_cosim.run.fleet_record import FAILS, fleets_in
 from automotive_cosim.run.row import as_json
 from automotive_cosim.serve.records import NotHereError
-from automotive_cosim.studies.adoption.adoption import AdoptionStudy
-from automotive_cosim.studies.adoption.fleets import FAILS, fleet_id, fleets_in
+from automotive_cosim.studies.adoption.adoption import AdoptionStudy, fleet_id
+from automotive_cosim.studies.adoption.page import COLUMNS, shown_car
 
 
 def shares(folder: Path) -> Json:
@@ -19,15 +21,18 @@ def shares(folder: Path) -> Json:
         UserError: it is not a study's folder, or is damaged.
     """
     study = AdoptionStudy.read(folder)
+    seeds = counted(len(study.plan.jobs()), "seed")
     return {
         "name": folder.name,
-        "scenario": study.plan.scenario,
-        "agent": study.plan.agent,
-        "planned": len(study.plan.jobs()),
-        "done": len(study.rows),
+        "about": f"{study.plan.agent} in {study.plan.scenario}; {len(study.rows)} of {seeds} done. "
+        "Each car on the map has the assistant.",
+        "columns": COLUMNS,
         "running": is_being_written(folder / "lock"),
         "fails": FAILS,
-        "fleets": [{"id": name, "running": is_running} for name, is_running in fleets_in(folder)],
+        "fleets": [
+            {"id": name, "words": f"{name.replace('seed', 'seed ').replace('-', ', ', 1)} %", "running": is_running}
+            for name, is_running in fleets_in(folder)
+        ],
     }
 
 
@@ -43,4 +48,4 @@ def cars(folder: Path, name: str) -> Json:
     found = {
         fleet_id(row.seed, each.share): each.cars for row in AdoptionStudy.read(folder).rows for each in row.shares
     }
-    return {"cars": [as_json(car) for car in found.get(name, ())]}
+    return {"cars": [as_json(shown_car(car)) for car in found.get(name, ())]}

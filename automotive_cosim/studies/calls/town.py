@@ -12,9 +12,9 @@ import numpy as np
 from automotive_cosim.contracts import DrivingState, RoadShapes, RoadSnapshot
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.scenarios import Trip
+from automotive_cosim.traffic import running as in_traffic
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.lookout import read_shapes
-from automotive_cosim.traffic.records import make_seen
 from automotive_cosim.traffic.running import Running
 from automotive_cosim.traffic.sumo import LibSumo
 
@@ -55,8 +55,8 @@ class Town:
         self.trips: dict[str, CarTrip] = {}
         self.driving: dict[str, float] = {}
         """Who is on the road, and the gap that each keeps when standing."""
-        self.equipped: dict[str, tuple[str, float, float]] = {}
-        """Who has got a cockpit: vehicle class, length and width."""
+        self.equipped: list[str] = []
+        """Who has got a cockpit."""
 
     def after_step(self) -> None:
         """Records the step that has just been made."""
@@ -70,11 +70,6 @@ class Town:
                 self.trips[car] = replace(self.trips[car], until_s=now_s, has_left=True)
         for car, min_gap_m in self.driving.items():
             self.trips[car] = self._after(self.trips[car], car, min_gap_m, now_s)
-
-    def sit_in(self, car: str) -> None:
-        """Notes that a car has got a cockpit."""
-        of = self._sumo.vehicle
-        self.equipped[car] = of.getVehicleClass(car), of.getLength(car), of.getWidth(car)
 
     def _after(self, trip: CarTrip, car: str, min_gap_m: float, now_s: float) -> CarTrip:
         sumo, step_s = self._sumo, self._step_s
@@ -148,13 +143,7 @@ def network_of(running: Running) -> RoadShapes:
 
 def seen(running: Running) -> RoadSnapshot:
     """The equipped cars on the road now."""
-    sumo, town = running.sumo, running.watcher(Town)
-    here = (
-        make_seen(car, *size, *sumo.position(car), sumo.angle(car), sumo.speed(car), sumo.vehicle.getSignals(car))
-        for car, size in town.equipped.items()
-        if car in town.driving
-    )
-    return RoadSnapshot(sumo.time(), tuple(here), ())
+    return in_traffic.seen(running, running.watcher(Town).equipped)
 
 
 def trips_of(running: Running) -> Mapping[str, CarTrip]:
@@ -181,5 +170,5 @@ def way_of_device(running: Running, car: str) -> tuple[str, ...]:
 def _plan(town: Town, share: float, seed: int, driver: str, car: str) -> EgoPlan | None:
     if drawn(seed, car) >= share:
         return None
-    town.sit_in(car)
+    town.equipped.append(car)
     return EgoPlan(NOWHERE, driver, seed ^ crc32(car.encode()))

@@ -1,23 +1,22 @@
-"""Where the equipped cars of a share drove, and what was asked of their drivers; report and pages read it."""
+"""Where the cars of a fleet drove, and what was done in them; report and pages read it."""
 
 from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from shapely import LineString
 
-from automotive_cosim.contracts import Json
+from automotive_cosim.contracts import Json, RoadShapes, RoadSnapshot
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, ROAD
 from automotive_cosim.formats.writing import is_being_written, make_folder
 from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadWriter
-from automotive_cosim.studies.calls import town
 from automotive_cosim.traffic.fork import RemoteRoad
 
 FAILS = "loses its assistant:"
@@ -28,30 +27,34 @@ EVERY_S = 1.0
 """Between two looks at the cars."""
 
 
-def fleet_id(seed: int, share: float) -> str:
-    """The name of a share's folder below ``live``."""
-    return f"seed{seed}-{100 * share:g}"
-
-
 class FleetRecord:
-    """Writes the road of a share second by second; a full disk ends that, not the study."""
+    """Writes the road of a fleet second by second; a full disk ends that, not the fleet."""
 
-    def __init__(self, study: Path, name: str, road: RemoteRoad, about: Json) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        name: str,
+        road: RemoteRoad,
+        shapes: RoadShapes,
+        look: Callable[[], RoadSnapshot],
+        about: Json,
+    ) -> None:
         """Begins the file.
 
         Args:
-            study: its folder.
-            name: of the share (``fleet_id``).
-            road: the traffic, at the end of its warm-up.
-            about: what is run.
+            folder: of all results.
+            name: of the fleet, for its folder below ``live``.
+            road: the traffic.
+            shapes: the whole network.
+            look: gives where the cars are.
+            about: what is run, and by SUMO's ids under ``cars`` the trials of cars that have one.
         """
-        self._road = road
+        self._road, self._look = road, look
         self._next_s = road.time_s
         self._notes: list[str] = []
         self._writer: RoadWriter | None = None
         with suppress(OSError):
-            path = make_folder(make_folder(study, LIVE), name) / ROAD
-            shapes = road.call(town.network_of)
+            path = make_folder(make_folder(folder, LIVE), name) / ROAD
             self._writer = RoadWriter(path, shapes, road.source.network, about, road.time_s)
 
     def note(self, words: str) -> None:
@@ -65,7 +68,7 @@ class FleetRecord:
         self._next_s = self._road.time_s + EVERY_S
         notes, self._notes = self._notes, []
         try:
-            self._writer.fleet(self._road.call(town.seen), notes)
+            self._writer.fleet(self._look(), notes)
         except OSError:
             self.close()
 
@@ -79,13 +82,15 @@ class FleetRecord:
 
 @dataclass(frozen=True, slots=True)
 class DrivenFleet:
-    """The cars of a share, as they drove."""
+    """The cars of a fleet, as they drove."""
 
     roads: Sequence[Sequence[tuple[float, float]]]
     ways: Mapping[str, Sequence[tuple[float, float]]]
     """By car, where it drove."""
     notes: Mapping[str, Sequence[tuple[float, str]]] = field(default_factory=dict)
-    """By car, when and what was asked of its driver, in seconds after the warm-up."""
+    """By car, when and what was done in it or asked of its driver, in seconds after the beginning."""
+    trials: Mapping[str, str] = field(default_factory=dict)
+    """By car, the id of its trial, if it has one."""
 
     @property
     def box_m(self) -> tuple[float, float, float, float]:
@@ -94,27 +99,29 @@ class DrivenFleet:
         return min(xs), min(ys), max(xs), max(ys)
 
 
-def fleets_in(study: Path) -> Iterator[tuple[str, bool]]:
-    """The names of the shares that have been driven or are being driven, and whether they are."""
-    for path in sorted((study / LIVE).glob(f"*/{ROAD}")):
+def fleets_in(folder: Path) -> Iterator[tuple[str, bool]]:
+    """The names of the fleets that have been driven or are being driven, and whether they are."""
+    for path in sorted((folder / LIVE).glob(f"*/{ROAD}")):
         yield path.parent.name, is_being_written(path)
 
 
-def read_fleet(study: Path, name: str) -> DrivenFleet | None:
-    """A share's cars; None if they were not recorded.
+def read_fleet(folder: Path, name: str) -> DrivenFleet | None:
+    """A fleet's cars; None if they were not recorded.
 
     Raises:
         UserError: the file is damaged.
     """
-    path = study / LIVE / name / ROAD
+    path = folder / LIVE / name / ROAD
     if not path.is_file():
         return None
     roads: list[list[tuple[float, float]]] = []
     names: dict[int, str] = {}
     places: dict[str, list[tuple[float, float]]] = defaultdict(list)
     notes: dict[str, list[tuple[float, str]]] = defaultdict(list)
+    trials: dict[str, str] = {}
     try:
         for entry in read_road(path):
+            trials |= entry.get("cars", {})
             roads += (_points(line) for _, _, line, _ in entry.get("lanes", ()))
             names |= {number: car for number, car, *_ in entry.get("vehicles", ())}
             for number, x_m, y_m, *_ in entry.get("seen", ()):
@@ -125,7 +132,7 @@ def read_fleet(study: Path, name: str) -> DrivenFleet | None:
                 notes[car].append((entry["at_s"], words))
     except (LookupError, TypeError, ValueError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
-    return DrivenFleet(roads, {car: _smoothed(way) for car, way in places.items()}, notes)
+    return DrivenFleet(roads, {car: _smoothed(way) for car, way in places.items()}, notes, trials)
 
 
 def _smoothed(way: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]:
