@@ -270,15 +270,11 @@ class Cabin:
             + (CABIN_LOSS + leak * AIR_CP) * (outside.temperature_c - self.temperature_c)
             + controls.people * OCCUPANT_HEAT_W
         )
-        at_windshield = blown > 0 and (controls.air_up or controls.front_defroster)
-        weather = outside, outside_ratio
-        windshield = self._pane(
-            self.windshield, dt_s, *weather, 1.0, supply if at_windshield else None, 0.0, controls.front_sweeps_per_minute
-        )
+        jet = supply if blown > 0 and (controls.air_up or controls.front_defroster) else None
         heater = REAR_HEATER_W_M2 if controls.rear_defroster else 0.0
-        rear = self._pane(
-            self.rear_window, dt_s, *weather, REAR_WIND, None, heater, controls.rear_sweeps_per_minute
-        )
+        sweeps = controls.front_sweeps_per_minute, controls.rear_sweeps_per_minute
+        windshield = self._pane(self.windshield, dt_s, outside, outside_ratio, 1.0, jet, 0.0, sweeps[0])
+        rear = self._pane(self.rear_window, dt_s, outside, outside_ratio, REAR_WIND, None, heater, sweeps[1])
         on_glass = (rear.fog - self.rear_window.fog) / dt_s * GLASS_AREA_M2
         vapour = people + leak * (outside_ratio - self.moisture) + blown * (supply.ratio - self.moisture) - on_glass
         return Cabin(
@@ -298,9 +294,7 @@ class Cabin:
         settled = (leak + (1 - CABIN_FILTER) * fresh) * outside.fine_dust / out
         return settled + (self.fine_dust - settled) * math.exp(-out * dt_s / CABIN_VOLUME_M3)
 
-    def _supply(
-        self, controls: Controls, outside: Air, outside_ratio: float, blown: float, leak: float
-    ) -> _Supply:
+    def _supply(self, controls: Controls, outside: Air, outside_ratio: float, blown: float, leak: float) -> _Supply:
         """Air as it leaves the outlets: taken in, dried and cooled by the evaporator, then heated.
 
         The control adds to what holds the set temperature, by the cabin's balance of heat, a part for the present

@@ -81,11 +81,11 @@ class Signal(Generic[T]):
         Raises:
             SignalError: wrong type, out of range or not among the allowed values.
         """
+        valid: T = value
         if type(value) is float and self._floats[0] <= value <= self._floats[1]:  # as most are
-            valid: T = value
             return valid
         if value is None and self.optional:
-            return cast(T, None)
+            return valid
         expected = float if self.optional else type(self.default)
         if expected is float and type(value) is int:
             value = float(value)

@@ -99,21 +99,29 @@ def fingerprint(task: Task, half: str) -> str:
     return blake2b(repr(_plain(parts)).encode(), digest_size=8).hexdigest()
 
 
+_WORDS = (str, int, float, type(None), Enum)
+
+
+@cache
+def _compared(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(each.name for each in fields(kind) if each.compare)
+
+
 def _plain(value: Any) -> Any:
     """The same, in an order and a form that do not change from run to run."""
-    if isinstance(value, Enum | str | int | float | None):
+    if isinstance(value, _WORDS):
         return str(value)
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
     if isinstance(value, type):
         return value.__name__
     if is_dataclass(value):
-        own = [(each.name, _plain(getattr(value, each.name))) for each in fields(value) if each.compare]
-        return [type(value).__name__, *own]
+        kind: Any = type(value)
+        return [kind.__name__, *((name, _plain(getattr(value, name))) for name in _compared(kind))]
     if isinstance(value, Mapping):
         return sorted((str(key), _plain(each)) for key, each in value.items())
-    if isinstance(value, frozenset | set):
+    if isinstance(value, (frozenset, set)):
         return sorted(map(str, map(_plain, value)))
-    if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
     raise TypeError(f"{value!r} has no plain form")
 
 
