@@ -45,7 +45,8 @@ def _plain(value: Any) -> Any:
     if isinstance(value, int | float):
         return f"{value:.12g}"
     if is_dataclass(value):
-        own = ((name, getattr(value, name), default) for name, default in _defaults(type(value)))
+        kind: Any = type(value)
+        own = ((name, getattr(value, name), default) for name, default in _defaults(kind))
         told = [(name, each) for name, each, default in own if each != default]
         return [(name, str(each) if name in WORDED else _plain(each)) for name, each in told]
     if isinstance(value, Mapping):
