@@ -4,7 +4,8 @@
     python benchmarks/beside.py ../other --parts lean reset --net town.net.xml --rounds 3
 
 Processor time is user and system time of all processes of a part, keeper and simulations included; the machine may
-be shared. Of several rounds the least counts, of decisions the least quarter.
+be shared. Of several rounds the least counts; decisions are measured in chunks in turns, of which the least quarter
+counts.
 """
 
 from __future__ import annotations
@@ -14,13 +15,21 @@ import contextlib
 import json
 import os
 import subprocess
+import sys
 import tempfile
 import time
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 MARK = "XDG_RUNTIME_DIR"
 """Passed on to the keeper and to simulations: by its value, processes are told to be of one part."""
+COMPILED = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+"""Commands find their modules compiled, as anybody's second one does."""
 LISTINGS = ("--help", "run --help", "tasks list", "scenarios list", "show drives", "agents list")
+CHUNKS = 20
+"""Of a round of decisions."""
+LAST_S = 840.0
+"""No chunk begins later in a drive of fifteen minutes; the next drive is the same again."""
 PARTS = ("listings", "lean", "full", "reset", "second", "kept")
 
 
@@ -56,36 +65,67 @@ def spent_s(command: list[str], mark: str, cwd: Path, until: Path | None = None)
     return sum(each_s - before.get(pid, 0.0) for pid, each_s in seen.items())
 
 
-def lean(*, is_lean: bool) -> dict[str, float]:
-    """Milliseconds of a decision of ``FlatDrive-v0``, and of its second in this process and in the simulation's."""
+def chunks(*, is_lean: bool) -> Iterator[tuple[float, float]]:
+    """Milliseconds of a simulated second of ``FlatDrive-v0`` in this process and in the simulation's, over waits of
+    two seconds, fifteen at a time."""
     import gymnasium as gym
 
     import automotive_cosim  # noqa: F401, which registers the environments
 
     env = gym.make("AutomotiveCosim/FlatDrive-v0", families=("grid_june",), minutes=15, lean=is_lean).unwrapped
     env.reset(seed=0)
-    mine: list[float] = []
-    others: list[float] = []
-    for _ in range(20):
+    while True:
+        if env.episode.seconds > LAST_S:
+            env.reset(seed=0)
         before_s, there_s = time.process_time(), sum(processes(os.environ[MARK]).values())
-        mine_s, seconds = 0.0, 0.0
+        mine_s, clock_s = 0.0, env.episode.seconds
         for _ in range(15):
-            begun_s, clock_s = time.process_time(), env.episode.seconds
+            begun_s = time.process_time()
             env.step(1)
             mine_s += time.process_time() - begun_s
-            seconds += env.episode.seconds - clock_s
         own_s = time.process_time() - before_s
         both_s = sum(processes(os.environ[MARK]).values()) - there_s
-        mine.append(1000 * mine_s / seconds)
-        others.append(1000 * (both_s - own_s) / seconds)
-    quarter = len(mine) // 4
-    python_ms, sumo_ms = sorted(mine)[quarter], sorted(others)[quarter]
-    name = "lean" if is_lean else "full"
-    return {
-        f"{name}: Python, ms a simulated second": python_ms,
-        f"{name}: simulation's process, ms a simulated second": sumo_ms,
-        f"{name}: decisions of 2 s per second of one core": 500 / (python_ms + sumo_ms),
-    }
+        seconds = env.episode.seconds - clock_s
+        yield 1000 * mine_s / seconds, 1000 * (both_s - own_s) / seconds
+
+
+def decisions(part: str, checkouts: Sequence[Path], rounds: int) -> list[dict[str, float]]:
+    """Figures of the decisions of each checkout; their chunks are measured in turns, so that what else the machine
+    does falls on all of them."""
+    with contextlib.ExitStack() as open_:
+        marks = [open_.enter_context(tempfile.TemporaryDirectory()) for _ in checkouts]
+        running = [
+            subprocess.Popen(
+                [str(each / ".venv/bin/python"), __file__, str(each), "--own", part],
+                cwd=each,
+                env=os.environ | {MARK: mark},
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+            for each, mark in zip(checkouts, marks, strict=True)
+        ]
+        found: list[list[tuple[float, float]]] = [[] for _ in running]
+        for _ in range(CHUNKS * rounds):
+            for worker, taken in zip(running, found, strict=True):
+                assert worker.stdin is not None
+                assert worker.stdout is not None
+                worker.stdin.write("\n")
+                worker.stdin.flush()
+                taken.append(tuple(json.loads(worker.stdout.readline())))
+        for worker in running:
+            worker.communicate()
+    figures = []
+    for taken in found:
+        python_ms, sumo_ms = (sorted(each)[len(each) // 4] for each in zip(*taken, strict=True))
+        figures.append(
+            {
+                f"{part}: Python, ms a simulated second": python_ms,
+                f"{part}: simulation's process, ms a simulated second": sumo_ms,
+                f"{part}: decisions of 2 s per second of one core": 500 / (python_ms + sumo_ms),
+            }
+        )
+    return figures
 
 
 def first_reset(net: str) -> dict[str, float]:
@@ -139,7 +179,9 @@ def listings(program: str, cwd: Path) -> dict[str, float]:
     for words in LISTINGS:
         command = [program, *words.split()]
         begun = os.times()
-        subprocess.run(command, cwd=cwd, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        subprocess.run(
+            command, cwd=cwd, env=COMPILED, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False
+        )
         ended = os.times()
         spent = ended.children_user - begun.children_user + ended.children_system - begun.children_system
         found[f"{words}, ms"] = 1000 * spent
@@ -206,14 +248,21 @@ def main() -> None:
     parser.add_argument("--own", default="", help=argparse.SUPPRESS)
     given = parser.parse_args()
     net = str(Path(given.net).absolute()) if given.net else ""
+    if given.own == "reset":
+        print(json.dumps(first_reset(net or "paris_centre")))
+        return
     if given.own:
-        found = first_reset(net or "paris_centre") if given.own == "reset" else lean(is_lean=given.own == "lean")
-        print(json.dumps(found))
+        for _, chunk in zip(sys.stdin, chunks(is_lean=given.own == "lean"), strict=False):
+            print(json.dumps(chunk), flush=True)
         return
     checkouts = (given.other.absolute(), Path(__file__).absolute().parents[1])
     print("| figure | before | now | ratio |\n|---|---:|---:|---:|")
     for part in given.parts:
-        rounds = [[part_of(part, each, net) for each in checkouts] for _ in range(given.rounds)]
+        rounds = (
+            [decisions(part, checkouts, given.rounds)]
+            if part in ("lean", "full")
+            else [[part_of(part, each, net) for each in checkouts] for _ in range(given.rounds)]
+        )
         for name in rounds[0][0]:
             best = max if "per second" in name else min
             before, now = (best(both[side][name] for both in rounds) for side in (0, 1))

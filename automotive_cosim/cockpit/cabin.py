@@ -85,6 +85,8 @@ RAIN_OPAQUE = 30e-3
 RAIN_RUNS_OFF_S = 60.0
 WIPED_SHARE = 0.9
 """Share of the film removed by one sweep."""
+WIPED_PER_SWEEP = -math.log(1 - WIPED_SHARE)
+"""The same as a rate, if sweeps follow one another evenly."""
 SWEEPS_PER_MINUTE = {"OFF": 0.0, "INTERVAL": 12.0, "SLOW": 40.0, "MEDIUM": 50.0, "FAST": 65.0}
 """FMVSS 104 asks for one speed of at least 45 and another of at least 20."""
 STEP_S = 0.5
@@ -100,6 +102,9 @@ def humidity_ratio(temperature_c: float, humidity_pct: float) -> float:
     """Kilograms of vapour per kilogram of dry air."""
     vapour = humidity_pct / 100 * saturation_hpa(temperature_c)
     return 0.622 * vapour / (PRESSURE_HPA - vapour)
+
+
+EVAPORATOR_RATIO = humidity_ratio(EVAPORATOR_C, 100)
 
 
 def relative_humidity_pct(temperature_c: float, ratio: float) -> float:
@@ -250,27 +255,26 @@ class Cabin:
         """The cabin after a time with constant controls and weather."""
         cabin = self
         steps = math.ceil(duration_s / STEP_S - 1e-9)
+        outside_ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
         for _ in range(steps):
-            cabin = cabin._step(duration_s / steps, controls, outside)
+            cabin = cabin._step(duration_s / steps, controls, outside, outside_ratio)
         return cabin
 
-    def _step(self, dt_s: float, controls: Controls, outside: Air) -> Cabin:
+    def _step(self, dt_s: float, controls: Controls, outside: Air, outside_ratio: float) -> Cabin:
         blown = BLOWER_FULL * controls.fan_pct / 100
         leak = AIR_DENSITY * CABIN_VOLUME_M3 * _leaks_per_hour(controls, outside) / 3600
-        supply = self._supply(controls, outside, blown, leak)
-        outside_ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
+        supply = self._supply(controls, outside, outside_ratio, blown, leak)
         people = controls.people * (OCCUPANT_VAPOUR + (WET_CLOTHES_VAPOUR if self.start.wet_clothes else 0.0))
         heat = (
             blown * AIR_CP * (supply.temperature_c - self.temperature_c)
             + (CABIN_LOSS + leak * AIR_CP) * (outside.temperature_c - self.temperature_c)
             + controls.people * OCCUPANT_HEAT_W
         )
-        at_windshield = blown > 0 and (controls.air_up or controls.front_defroster)
-        windshield = self._pane(self.windshield, dt_s, outside, 1.0, supply if at_windshield else None, 0.0)
+        jet = supply if blown > 0 and (controls.air_up or controls.front_defroster) else None
         heater = REAR_HEATER_W_M2 if controls.rear_defroster else 0.0
-        rear = self._pane(self.rear_window, dt_s, outside, REAR_WIND, None, heater)
-        windshield = _wet(windshield, dt_s, outside, controls.front_sweeps_per_minute)
-        rear = _wet(rear, dt_s, outside, controls.rear_sweeps_per_minute)
+        sweeps = controls.front_sweeps_per_minute, controls.rear_sweeps_per_minute
+        windshield = self._pane(self.windshield, dt_s, outside, outside_ratio, 1.0, jet, 0.0, sweeps[0])
+        rear = self._pane(self.rear_window, dt_s, outside, outside_ratio, REAR_WIND, None, heater, sweeps[1])
         on_glass = (rear.fog - self.rear_window.fog) / dt_s * GLASS_AREA_M2
         vapour = people + leak * (outside_ratio - self.moisture) + blown * (supply.ratio - self.moisture) - on_glass
         return Cabin(
@@ -290,7 +294,7 @@ class Cabin:
         settled = (leak + (1 - CABIN_FILTER) * fresh) * outside.fine_dust / out
         return settled + (self.fine_dust - settled) * math.exp(-out * dt_s / CABIN_VOLUME_M3)
 
-    def _supply(self, controls: Controls, outside: Air, blown: float, leak: float) -> _Supply:
+    def _supply(self, controls: Controls, outside: Air, outside_ratio: float, blown: float, leak: float) -> _Supply:
         """Air as it leaves the outlets: taken in, dried and cooled by the evaporator, then heated.
 
         The control adds to what holds the set temperature, by the cabin's balance of heat, a part for the present
@@ -299,19 +303,27 @@ class Cabin:
         if controls.recirculation:
             taken_c, ratio = self.temperature_c, self.moisture
         else:
-            taken_c = outside.temperature_c
-            ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
+            taken_c, ratio = outside.temperature_c, outside_ratio
         if controls.air_conditioning and outside.temperature_c > COMPRESSOR_MINIMUM_C and controls.fan_pct:
             taken_c = min(taken_c, EVAPORATOR_C)
-            ratio = min(ratio, humidity_ratio(EVAPORATOR_C, 100))
+            ratio = min(ratio, EVAPORATOR_RATIO)
         wanted = _holding_c(controls, outside, blown, leak) + SUPPLY_GAIN * (controls.set_c - self.temperature_c)
         if controls.front_defroster:
             wanted = max(wanted, DEFROST_SUPPLY_C)
         return _Supply(max(taken_c, min(wanted, hottest_c(taken_c, blown))), ratio, controls.fan_pct)
 
     def _pane(
-        self, pane: Pane, dt_s: float, outside: Air, wind: float, jet: _Supply | None, heater_w_m2: float
+        self,
+        pane: Pane,
+        dt_s: float,
+        outside: Air,
+        outside_ratio: float,
+        wind: float,
+        jet: _Supply | None,
+        heater_w_m2: float,
+        sweeps_per_minute: float,
     ) -> Pane:
+        """The pane a step later. Rain falls, runs off and is wiped away; dew is only wiped away."""
         h_in, near_c, ratio = INSIDE_STILL, self.temperature_c, self.moisture
         if jet is not None:
             h_in += max(JET_LEAST, JET_FULL * jet.fan_pct / 100)
@@ -322,16 +334,19 @@ class Cabin:
         middle_c = pane.temperature_c + dt_s * (flow_in + heater_w_m2 - flow_out) / GLASS_CAPACITY_M2
         inner_c = _surface(middle_c, near_c, h_in)
         outer_c = _surface(middle_c, outside.temperature_c, h_out)
-        outside_ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
         condensing = h_in / AIR_CP * (ratio - humidity_ratio(inner_c, 100))
         dewing = (h_out - 5.0) / AIR_CP * (outside_ratio - humidity_ratio(outer_c, 100))
+        wiped_per_s = WIPED_PER_SWEEP * sweeps_per_minute / 60
+        lost_per_s = wiped_per_s + 1 / RAIN_RUNS_OFF_S
+        falling = outside.rain_mm_h / 3600 * (1 + outside.speed_mps / 10)
+        steady = falling / lost_per_s
         return Pane(
             middle_c,
             inner_c,
             outer_c,
             fog=_film(pane.fog + dt_s * condensing),
-            dew=_film(pane.dew + dt_s * dewing),
-            rain=pane.rain,
+            dew=_film(pane.dew + dt_s * dewing) * math.exp(-wiped_per_s * dt_s),
+            rain=min(steady + (pane.rain - steady) * math.exp(-lost_per_s * dt_s), 3 * RAIN_OPAQUE),
         )
 
 
@@ -423,22 +438,6 @@ def _settled(cabin_c: float, outside: Air, wind: float) -> Pane:
     inner_c = _surface(middle_c, cabin_c, INSIDE_STILL)
     outer_c = _surface(middle_c, outside.temperature_c, OUTSIDE_STILL + OUTSIDE_PER_MPS * wind * outside.speed_mps)
     return Pane(middle_c, inner_c, outer_c)
-
-
-def _wet(pane: Pane, dt_s: float, outside: Air, sweeps_per_minute: float) -> Pane:
-    """Rain falls, runs off and is wiped away; dew is only wiped away."""
-    wiped_per_s = -math.log(1 - WIPED_SHARE) * sweeps_per_minute / 60
-    lost_per_s = wiped_per_s + 1 / RAIN_RUNS_OFF_S
-    falling = outside.rain_mm_h / 3600 * (1 + outside.speed_mps / 10)
-    steady = falling / lost_per_s
-    return Pane(
-        pane.temperature_c,
-        pane.inner_c,
-        pane.outer_c,
-        fog=pane.fog,
-        rain=min(steady + (pane.rain - steady) * math.exp(-lost_per_s * dt_s), 3 * RAIN_OPAQUE),
-        dew=pane.dew * math.exp(-wiped_per_s * dt_s),
-    )
 
 
 def sweeps_per_minute(mode: str, rain_mm_h: float) -> float:

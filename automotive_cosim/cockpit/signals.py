@@ -13,8 +13,9 @@ off. What VSS lacks has paths in its manner.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
+from math import inf
 from operator import is_, itemgetter
 from typing import Any, Generic, TypeVar, cast
 
@@ -48,6 +49,14 @@ class Signal(Generic[T]):
     allowed: tuple[T, ...] = ()
     optional: bool = False
     """Whether it may be None because there is nothing to measure."""
+    _floats: tuple[float, float] = field(init=False, repr=False, compare=False)
+    """Between which floats are valid; none are between infinity and its negative."""
+
+    def __post_init__(self) -> None:
+        least, most = self.minimum, self.maximum
+        takes_any = (self.optional or type(self.default) is float) and not self.allowed
+        floats = (-inf if least is None else least, inf if most is None else most) if takes_any else (inf, -inf)
+        object.__setattr__(self, "_floats", floats)
 
     def __str__(self) -> str:
         return self.path
@@ -66,12 +75,17 @@ class Signal(Generic[T]):
         """The largest valid number."""
         return 0.0 if self.maximum is None else self.maximum
 
-    def check(self, value: object) -> T:
+    def check(self, value: Any) -> T:
         """The value to store; an int becomes a float if floats are expected.
 
-        Raises SignalError: wrong type, out of range or not among the allowed values."""
+        Raises:
+            SignalError: wrong type, out of range or not among the allowed values.
+        """
+        valid: T = value
+        if type(value) is float and self._floats[0] <= value <= self._floats[1]:  # as most are
+            return valid
         if value is None and self.optional:
-            return cast(T, None)
+            return valid
         expected = float if self.optional else type(self.default)
         if expected is float and type(value) is int:
             value = float(value)

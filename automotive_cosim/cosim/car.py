@@ -23,6 +23,7 @@ from automotive_cosim.geo.signs import LocalSigns
 from automotive_cosim.scenarios import WeatherAt, weather_at
 from automotive_cosim.traffic.base import Event, Traffic
 from automotive_cosim.traffic.ego import BUCKLES, CLEARS_VIEW, PARKS, SETS_OFF, WAKES_UP
+from automotive_cosim.traffic.records import with_ahead, with_alternatives
 
 SEEN = NOTICED / 4
 """Share of the glass that is wet or fogged from which a driver who is told of it does something about it."""
@@ -199,7 +200,7 @@ class Car:
             if route and route[0] in way.edges
         )
         others = tuple(way for way in still if way.edges != route)
-        return replace(driving, ahead=replace(driving.ahead, alternatives=others))
+        return with_ahead(driving, with_alternatives(driving.ahead, others))
 
 
 def with_cause(errands: Iterable[Errand], since_s: float, now_s: float, ringing: str) -> tuple[Errand, ...]:

@@ -46,14 +46,17 @@ class Alarm:
     """Watches one drive for what wakes."""
 
     wakes: tuple[Wake, ...] = WAKES
-    _told: dict[str, _Told] = field(default_factory=dict)
+    _told: tuple[_Told, ...] = field(init=False)
+    """What was told last of each."""
+
+    def __post_init__(self) -> None:
+        self._told = tuple(_Told() for _ in self.wakes)
 
     def see(self, drive: Drive) -> tuple[Noticed, ...]:
         """What has changed at the newest moment. At the first, whatever there is to report."""
         found = []
         now_s = drive[-1].time_s
-        for wake in self.wakes:
-            told = self._told.get(wake.name) or self._told.setdefault(wake.name, _Told())
+        for wake, told in zip(self.wakes, self._told, strict=True):
             reading = wake.reads(drive)
             if reading == told.reading or (reading := _risen(reading, told.reading)) == told.reading:
                 told.differs_since_s = None

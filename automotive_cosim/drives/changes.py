@@ -159,7 +159,10 @@ def _kmh(now: Moment) -> float:
 def _before(drive: Drive, seconds: float = TREND_S) -> Moment:
     """The moment so long ago, or the first."""
     from_s = drive[-1].time_s - seconds
-    return next((moment for moment in reversed(drive) if moment.time_s <= from_s), drive[0])
+    for moment in reversed(drive):
+        if moment.time_s <= from_s:
+            return moment
+    return drive[0]
 
 
 def _trend(now: float, before: float, by: float) -> str:
@@ -171,8 +174,10 @@ def _trend_of(drive: Drive, read: Callable[[Moment], float], by: float, over_s: 
     """The trend over some seconds; that of the last three, where these go the other way as fast."""
     now = read(drive[-1])
     whole = _trend(now, read(_before(drive, over_s)), by)
+    if whole == "steady":
+        return whole
     turned = _trend(now, read(_before(drive, TURN_S)), by * TURN_S / over_s)
-    return turned if {whole, turned} == {"rising", "falling"} else whole
+    return whole if turned == "steady" else turned
 
 
 def _signal_trend(drive: Drive, path: str, by: float) -> str:

@@ -11,6 +11,7 @@ from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Scenario, Trip, open_scenario
 from automotive_cosim.scenarios.opening import network_of
+from automotive_cosim.traffic.additional import reading_once
 from automotive_cosim.traffic.options import read_configuration, stamp
 from automotive_cosim.traffic.rounds import in_turn
 
@@ -26,8 +27,9 @@ def elsewhere(script: DriveScript, place: str) -> DriveScript:
         UnknownNameError: no such scenario.
         ScenarioError: its files are invalid, or none of its trips can be driven again and again.
     """
-    scenario = open_scenario(place)
-    trips = _in_turn(scenario, stamp(read_configuration(scenario.config)))
+    with reading_once():
+        scenario = open_scenario(place)
+        trips = _in_turn(scenario, stamp(read_configuration(scenario.config)))
     if not trips:
         raise ScenarioError(
             f"no trip of {place} leads back to its start, so a drive would end too soon; a drive needs a "

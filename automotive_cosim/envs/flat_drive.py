@@ -306,9 +306,9 @@ class DriveNumbers:
             *numbers.values(),
             *chain.from_iterable(map(_words, texts, SLOTS)),
             *(float(name in known.changed) for name in READINGS),
-            *map(_age, ages_s),
+            *(_age(age_s) if age_s else 0.0 for age_s in ages_s),
             *(float(name in self._since and name not in self._told) for name in SIGNS),
-            *(_age(known.time_s - self._shown_s.get(kind, -LONG_S)) for kind in AlertKind),
+            *(_age(known.time_s - self._shown_s[kind]) if kind in self._shown_s else 1.0 for kind in AlertKind),
         ]
         return np.array(parts, np.float32).clip(-1.0, 1.0)
 

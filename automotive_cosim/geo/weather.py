@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from enum import StrEnum
+from functools import cache
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import UserError
@@ -157,13 +158,18 @@ def words(code: int) -> str:
     return WMO_WORDS.get(code, f"weather code {code}")
 
 
+@cache
+def _of_code(code: int) -> frozenset[str]:
+    return frozenset(word for codes, names in _PHENOMENA_OF_CODE.items() if code in codes for word in names)
+
+
 def phenomena(weather: Weather) -> frozenset[str]:
     """The weather in the words of ``PHENOMENA``.
 
     A code and the measured values may each imply a phenomenon: visibility under one kilometre without precipitation
     or dust is fog, and 7.6 mm of rain per hour is heavy rain, whatever the code says.
     """
-    found = {word for codes, names in _PHENOMENA_OF_CODE.items() if weather.weather_code in codes for word in names}
+    found = set(_of_code(weather.weather_code))
     if weather.visibility < FOG_BELOW_M and found.isdisjoint(("precipitation", "dust")):
         found.add("fog")
     if "rain" in found and weather.precipitation >= HEAVY_RAIN_FROM_MM_PER_H:

@@ -93,7 +93,7 @@ def kept(
 
     Raises UserError: the plan does not fit, or the folder cannot take its results."""
     plan.check()
-    return opened(folder, plan.as_json(), row, parts, planned=len(plan.jobs()))
+    return opened(folder, plan.as_json(), row, parts, planned=sum(len(job.row_ids) for job in plan.jobs()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,6 @@ class BatchKind(Generic[P, J, R]):
         tell: Callable[[Progress[R]], None] = lambda progress: None,
     ) -> Progress[R]:
         """Runs the remaining jobs of a plan; arguments and errors are those of ``run_plan``."""
-        plan.check()
         with (
             kept(plan, folder, self.row, self.parts) as store,
             executor.metered(budget, spent_before(store)) if self.asks_models else nullcontext() as meter,

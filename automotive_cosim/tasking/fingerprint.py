@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import Enum
+from functools import cache
 from hashlib import blake2b
 from typing import Any
 
@@ -34,16 +35,19 @@ def _digest(value: Any) -> str:
     return blake2b(repr(_plain(value)).encode(), digest_size=8).hexdigest()
 
 
+_WORDS = (str, bool, type(None), Enum)
+
+
 def _plain(value: Any) -> Any:
     """The same, in an order and a form that do not change from run to run."""
-    if isinstance(value, Enum | str | bool | None):
+    if isinstance(value, _WORDS):
         return str(value)
     if isinstance(value, int | float):
         return f"{value:.12g}"
     if is_dataclass(value):
-        own = [(each.name, getattr(value, each.name)) for each in fields(value) if each.compare]
-        defaults = {each.name: _default(each) for each in fields(value)}
-        told = [(name, each) for name, each in own if each != defaults[name]]
+        kind: Any = type(value)
+        own = ((name, getattr(value, name), default) for name, default in _defaults(kind))
+        told = [(name, each) for name, each, default in own if each != default]
         return [(name, str(each) if name in WORDED else _plain(each)) for name, each in told]
     if isinstance(value, Mapping):
         return sorted((str(key), _plain(each)) for key, each in value.items())
@@ -52,6 +56,12 @@ def _plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_plain(each) for each in value]
     raise TypeError(f"{value!r} has no plain form")
+
+
+@cache
+def _defaults(kind: Any) -> tuple[tuple[str, Any], ...]:
+    """The names of the fields that count, and their defaults."""
+    return tuple((each.name, _default(each)) for each in fields(kind) if each.compare)
 
 
 def _default(field: Field[Any]) -> Any:

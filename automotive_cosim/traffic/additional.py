@@ -7,7 +7,9 @@ too. Their ``type`` says what they are (``KINDS``), also in OpenStreetMap's word
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,7 +24,7 @@ from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.mirror import mirrored
 from automotive_cosim.traffic.network import Network, Shape, open_to, quantity, read_network
-from automotive_cosim.traffic.options import FALSE, TRUE, Configuration
+from automotive_cosim.traffic.options import FALSE, TRUE, Configuration, stamp
 
 KINDS = {
     **dict.fromkeys(
@@ -43,6 +45,20 @@ CLOSES_EDGE, CLOSES_LANE = "closingReroute", "closingLaneReroute"
 """Parts of a rerouter that keep vehicles out."""
 
 
+_READ = ContextVar[dict[object, Network] | None]("networks that were read", default=None)
+
+
+@contextmanager
+def reading_once() -> Iterator[None]:
+    """Within it, ``read_mapped`` reads a network once, as long as its files are as they are. None is kept after it:
+    that of a city takes hundreds of megabytes."""
+    token = _READ.set({})
+    try:
+        yield
+    finally:
+        _READ.reset(token)
+
+
 def read_mapped(configuration: Configuration, read: Network | None = None) -> Network:
     """The network of a configuration with what is around its roads, and which of them rerouters close to cars.
 
@@ -53,7 +69,16 @@ def read_mapped(configuration: Configuration, read: Network | None = None) -> Ne
     Raises:
         ScenarioError: a file is missing or invalid; a polygon with its line.
     """
-    network = read or read_network(configuration.net)
+    kept = _READ.get()
+    if kept is None:
+        return _mapped(configuration, read or read_network(configuration.net))
+    files = stamp(configuration)
+    if files not in kept:
+        kept[files] = _mapped(configuration, read or read_network(configuration.net))
+    return kept[files]
+
+
+def _mapped(configuration: Configuration, network: Network) -> Network:
     closed: dict[str, set[str]] = {CLOSES_EDGE: set(), CLOSES_LANE: set()}
 
     counts = False

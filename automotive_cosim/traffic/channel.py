@@ -6,12 +6,17 @@ import pickle
 import socket
 import struct
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from typing import Any
+
+from automotive_cosim.formats.xml import without_collection
 
 LOADING_LIMIT_S = 300.0
 """Processor time that the simulation may take to load a network without a sign of life, or wall time where the
 system does not tell it. A city of 50,000 edges takes 36 s."""
+
+LARGE_BYTES = 1_000_000
+"""A larger message is a network, with hundreds of thousands of objects that stay."""
 
 _LENGTH = struct.Struct("!Q")
 
@@ -62,7 +67,8 @@ class MessageChannel:
         except OSError as error:
             raise ClosedError from error
         (length,) = _LENGTH.unpack(self._read(_LENGTH.size, waits_on))
-        return pickle.loads(self._read(length, waits_on))
+        with without_collection() if length > LARGE_BYTES else nullcontext():
+            return pickle.loads(self._read(length, waits_on))
 
     def send_socket(self, connection: socket.socket | MessageChannel) -> None:
         """Sends a socket, or that of a channel, to the process on the other side."""

@@ -36,7 +36,7 @@ from typing import TypeAlias
 
 from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, Road, RoadNetwork
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats.xml import read_root, scan
+from automotive_cosim.formats.xml import read_root, scan, without_collection
 from automotive_cosim.traffic import georeference
 from automotive_cosim.traffic.naming import local_names
 from automotive_cosim.traffic.posted_limits import TimedAccess, TimedLimit, timed_access, timed_limits
@@ -318,6 +318,7 @@ class NetworkReader:
             self._take_edge(self._edge)
             self._edge = {}
 
+    @without_collection()
     def network(self) -> Network:
         """The network, once all is read.
 

@@ -25,6 +25,7 @@ from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadSha
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.writing import copy
+from automotive_cosim.formats.xml import without_collection
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
@@ -110,7 +111,8 @@ class Server:
         load_library()  # which writes where Python keeps its compiled modules
         confine([scratch] if setup.outputs is None else [scratch, setup.outputs.parent])
         os.chdir(scratch)  # which is gone afterwards: nothing can be made under a relative name
-        world = World(setup, scratch)
+        with without_collection():
+            world = World(setup, scratch)
         self._loaded = Running(world, self._beat)
         self._set_alarm()
         world.warm_up(self._progress)

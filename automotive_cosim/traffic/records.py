@@ -7,7 +7,9 @@ same object, in a fifth of the time.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields, make_dataclass
+from operator import attrgetter
 from typing import Any, TypeVar, cast
 
 from automotive_cosim.contracts import (
@@ -38,6 +40,20 @@ def maker(kind: type[Noun]) -> type[Noun]:
     return cast("type[Noun]", make)
 
 
+def changer(kind: type[Noun], name: str) -> Callable[[Noun, object], Noun]:
+    """A function that copies a record of a frozen dataclass with slots with another value in one field."""
+    names = [field.name for field in fields(cast(Any, kind))]
+    read, at, make = attrgetter(*names), names.index(name), maker(kind)
+
+    def changed(record: Noun, value: object) -> Noun:
+        values = list(read(record))
+        values[at] = value
+        return make(*values)
+
+    return changed
+
+
 make_state, make_road, make_ahead = maker(DrivingState), maker(RoadHere), maker(RoadAhead)
 make_around, make_other, make_light = maker(Around), maker(OtherVehicle), maker(TrafficLight)
 make_seen = maker(SeenVehicle)
+with_ahead, with_alternatives = changer(DrivingState, "ahead"), changer(RoadAhead, "alternatives")

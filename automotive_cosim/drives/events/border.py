@@ -30,14 +30,12 @@ class BorderCrossing:
 
 def crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
     """The border crossed within the last minute; None without one, or if a country is unknown."""
-    now = drive[-1]
-    here = now.context.country
-    for index in range(len(drive) - 1, -1, -1):
-        moment = drive[index]
+    here, now_s = drive[-1].context.country, drive[-1].time_s
+    for back, moment in enumerate(reversed(drive), start=1):
         if moment.context.country != here:
             known = bool(here and moment.context.country)
-            return BorderCrossing(moment, all(m.context.country != here for m in drive[:index])) if known else None
-        if now.time_s - moment.time_s > BORDER_S:
+            return BorderCrossing(moment, all(m.context.country != here for m in drive[:-back])) if known else None
+        if now_s - moment.time_s > BORDER_S:
             return None
     return None
 

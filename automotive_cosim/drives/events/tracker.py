@@ -58,9 +58,10 @@ class Tracker:
     """Finds the events of one drive as it goes."""
 
     def __init__(self, kinds: Mapping[str, EventKind]) -> None:
-        self._kinds = kinds
-        self._latest: dict[str, dict[tuple[str, bool], DriveEvent]] = {name: {} for name in kinds}
-        """By kind, then by subject and whether it only looks like one."""
+        self._latest: list[tuple[EventKind, dict[tuple[str, bool], DriveEvent]]] = [
+            (kind, {}) for kind in kinds.values()
+        ]
+        """Of each kind, by subject and whether it only looks like one."""
         self.events: list[DriveEvent] = []
         """All events so far, by the instant at which they became observable."""
 
@@ -68,8 +69,8 @@ class Tracker:
         """Takes the last moment of a drive, and returns the events that became observable at it."""
         now_s = drive[-1].time_s
         opened = []
-        for name, kind in self._kinds.items():
-            latest, sights = self._latest[name], tuple(kind.sight(drive))
+        for kind, latest in self._latest:
+            sights = tuple(kind.sight(drive))
             if not latest and not sights:
                 continue
             seen = {(sighting.subject, sighting.lookalike): sighting for sighting in sights}
