@@ -12,6 +12,9 @@ MPH_PER_MPS = 3600 / 1609.344
 RARE = {"rare": True}
 """Metadata of a field that traces leave out where it is None: it came later than traces on record."""
 
+UNTRACED = {"untraced": True}
+"""Metadata of a field that traces leave out: who judges may read it, and what is simulated does not depend on it."""
+
 Json = dict[str, Any]
 """A JSON object: the edge of the package, where types end."""
 

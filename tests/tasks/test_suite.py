@@ -138,7 +138,7 @@ CHANGES = {
     "origin": {Differs.PLACE},
     "start": {Differs.DATE, Differs.TIME},
     "parked": {Differs.MOTION},
-    "signals": {Differs.SETTINGS},
+    "signals": {Differs.SETTINGS, Differs.UNITS},
     "weather": {Differs.WEATHER, Differs.VISIBILITY},
     "trip": {Differs.ROAD, Differs.TRAFFIC},
     "driver": {Differs.TRAFFIC, Differs.ROAD},
