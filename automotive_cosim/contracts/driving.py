@@ -134,7 +134,7 @@ class OtherVehicle:
     """Deceleration rate to avoid a crash: closing speed squared over twice the gap (Cooper and Ferguson, 1976);
     also None while the gap does not shrink."""
     kind: str = field(default="", metadata=UNTRACED)
-    """SUMO's vehicle class, of the leader alone: what only a look through the windshield tells. So does the next."""
+    """SUMO's vehicle class, of the leader alone, which only a look through the windshield tells; so the next."""
     is_braking: bool = field(default=False, metadata=UNTRACED)
     """Whether its brake lamps are lit."""
 

@@ -13,7 +13,7 @@ RARE = {"rare": True}
 """Metadata of a field that traces leave out where it is None: it came later than traces on record."""
 
 UNTRACED = {"untraced": True}
-"""Metadata of a field that traces leave out: who judges may read it, and what is simulated does not depend on it."""
+"""Metadata of a field that traces leave out: judges may read it, and nothing simulated depends on it."""
 
 Json = dict[str, Any]
 """A JSON object: the edge of the package, where types end."""

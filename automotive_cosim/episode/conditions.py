@@ -226,7 +226,11 @@ class Conditions:
         touch = "give see = both, interface = touch"
         if not self.interface.touches:
             return f"the picture, which interface = {self.interface} cannot open; {touch}"
-        return f"the picture, which see = {self.see} withholds; {touch}" if Channel.SCREENSHOT in self.see.withheld else ""
+        return (
+            f"the picture, which see = {self.see} withholds; {touch}"
+            if Channel.SCREENSHOT in self.see.withheld
+            else ""
+        )
 
     def at(self, seed: int) -> Conditions:
         """The conditions of the episode with a seed."""

@@ -137,7 +137,9 @@ class Ground:
         Raises:
             TriggerNotReachedError, TrafficError: see ``SituationFinder.find``.
         """
-        finder = SituationFinder(EpisodeSpec(task.id, half_name, scenario, seed=seed, conditions=SEEING), simulations, task=task)
+        finder = SituationFinder(
+            EpisodeSpec(task.id, half_name, scenario, seed=seed, conditions=SEEING), simulations, task=task
+        )
         if coarse:
             finder.scenario = replace(finder.scenario, sumo=finder.scenario.sumo.stepping(1.0))
         hand_over = finder.find(SeedSource(seed).next())

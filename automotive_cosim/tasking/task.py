@@ -348,7 +348,8 @@ class Task:
         halves = (self.first, self.second)
         if any(half.says for half in halves):
             return Hurry.WORDS
-        if any(arrival.kind == "call" for half in halves for arrival in half.start.arrivals):
+        events = (each for half in halves for each in (*half.start.arrivals, *half.start.interruptions))
+        if any(isinstance(each, Arrival) and each.kind == "call" for each in events):
             return Hurry.CALL
         is_short = min(half.deadline.seconds for half in halves) <= HURRIED_S
         return Hurry.ROAD if is_short and not any(half.start.parked for half in halves) else None

@@ -300,12 +300,14 @@ def slow_leader_within(moment: Moment, speed_kmh: float, distance_m: float) -> b
 
 @situation("a {kind} in front within {distance_m:g} m")
 def leader_is(moment: Moment, kind: str, distance_m: float) -> bool:
-    """A vehicle of that class of SUMO's (``passenger``, ``truck``, ``delivery``, ...) in front within a distance."""
+    """A vehicle of a class of SUMO's (``passenger``, ``truck``, ``delivery``) in front within a distance."""
     leader = moment.driving.around.leader
     return leader is not None and leader.kind == kind and leader.gap_m <= distance_m
 
 
-@situation(lambda distance_m, lit: f"in front within {distance_m:g} m, brake lamps that are {'lit' if lit else 'dark'}")
+@situation(
+    lambda distance_m, lit: f"in front within {distance_m:g} m, brake lamps that are {'lit' if lit else 'dark'}"
+)
 def leader_brakes(moment: Moment, distance_m: float, lit: bool = True) -> bool:
     """A vehicle in front within a distance, whose brake lamps are lit, or are not."""
     leader = moment.driving.around.leader

@@ -4,7 +4,7 @@ import re
 
 from automotive_cosim.cockpit.belongings import DAYS
 from automotive_cosim.cockpit.occupants import Seat
-from automotive_cosim.cockpit.signals import CABIN, DRIVE, HMI, HVAC, MEDIA, SEAT
+from automotive_cosim.cockpit.signals import CABIN, DRIVE, HMI, HVAC, MEDIA, SEAT, VOICE
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Differs, Hurry
@@ -27,6 +27,7 @@ NOTICED = {
     CABIN.SUNROOF_SHADE.path: ALL,
     DRIVE.MODE.path: ALL,
     HMI.BRIGHTNESS.path: FRONT,
+    HMI.REAR_SCREEN.path: ALL - FRONT,
     HVAC.AIR_CONDITIONING.path: ALL,
     HVAC.DRIVER_TEMPERATURE.path: frozenset({Seat.DRIVER}),
     HVAC.FAN_SPEED.path: ALL,
@@ -36,9 +37,10 @@ NOTICED = {
     MEDIA.VOLUME.path: ALL,
     SEAT.DRIVER_HEATING.path: frozenset({Seat.DRIVER}),
     SEAT.PASSENGER_HEATING.path: FRONT,
+    VOICE.GUIDANCE_VOLUME.path: FRONT,
 }
-"""From which seats a change can be seen, heard or felt: light, wind, sound and how it drives everywhere, a zone's air
-or a seat's warmth by who sits in it; those in front see the middle screen besides."""
+"""From which seats a change can be seen, heard or felt: light, wind, sound and how it drives everywhere, a zone's
+air or a seat's warmth by who sits in it; those in front see the middle screen besides."""
 
 
 @over((task, name) for task in PEOPLE for name in task.halves)
