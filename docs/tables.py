@@ -29,6 +29,7 @@ from automotive_cosim.interface import spaces
 from automotive_cosim.interface.policy import HOUSE
 from automotive_cosim.models.gguf import KNOWN
 from automotive_cosim.publish.leaderboard import board
+from automotive_cosim.run import difficulty
 from automotive_cosim.safety.protocol.evidence import protocol
 from automotive_cosim.safety.space import LIBRARY, read_space
 from automotive_cosim.voice import cabin
@@ -157,6 +158,21 @@ def _fields(name: str) -> str:
     return "\n\n".join(parts)
 
 
+def _contestants() -> str:
+    """Who has tried the halves that are on record as they are now."""
+    known = [
+        each.outcomes.won
+        for name, each in difficulty.shipped().halves.items()
+        if difficulty.measured(*name.split("/"))
+    ]
+    rows = []
+    for name, ability in sorted(difficulty.shipped().abilities.items(), key=lambda each: -each[1]):
+        outcomes = [won[name] for won in known if name in won]
+        won, tried = sum(each[0] for each in outcomes), sum(each[1] for each in outcomes)
+        rows.append((name, f"{won:,} of {tried:,}", f"{ability:+.1f}"))
+    return _table(("Contestant", "Halves won", "Ability in logits"), rows)
+
+
 def _heard() -> str:
     """Word errors of the shipped table by the ratio of words to noise."""
     rows = []
@@ -184,6 +200,7 @@ def _openscenario() -> str:
 MADE: Mapping[str, Callable[[], str]] = {
     "conditions": _conditions,
     "cabin": lambda: (cabin.__doc__ or "").partition("\n\n")[2],
+    "contestants": _contestants,
     "families": _families,
     "framework": lambda: f"```python\n{FRAMEWORK.read_text(encoding='utf-8').strip()}\n```",
     "functions": lambda: f"```text\n{printed('show', 'functions')}\n```",

@@ -14,9 +14,6 @@ from automotive_cosim.contracts.plain import counted
 if TYPE_CHECKING:
     from automotive_cosim.tasking.task import Task
 
-NOT_MEASURED = "not measured since the situation last changed"
-NOT_TRIED = "not measured since the half last changed"
-
 app = typer.Typer(help="List, show and prove tasks.", no_args_is_help=True)
 app.command("validate")(validate)
 
@@ -51,7 +48,7 @@ def show(
     as_json: AsJson = False,
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""
-    from automotive_cosim.proof.frequency import measured
+    from automotive_cosim.proof import trail
     from automotive_cosim.run import difficulty
     from automotive_cosim.tasking.words import choices_in_words, half_in_words
     from automotive_cosim.tasks import CATALOGUE
@@ -60,13 +57,12 @@ def show(
     halves = {
         name: [
             *half_in_words(entry.half(name)),
-            ("reached", str(measured(task, name) or NOT_MEASURED)),
-            ("won by", str(difficulty.measured(task, name) or NOT_TRIED)),
+            *trail.of_half(entry, name),
         ]
         for name in entry.halves
     }
     if as_json:
-        print_json(difficulty.rated(entry) | {"halves": halves})
+        print_json(difficulty.rated(entry) | {"trail": list(trail.of_task(entry)), "halves": halves})
         return
     steps = counted(entry.optimal_steps, "step")
     kind = f"{entry.suite} suite, {entry.module}, {entry.dimension}, {entry.subset}"
@@ -82,6 +78,8 @@ def show(
     typer.echo(f"tags        {', '.join(sorted(entry.tags)) or 'none'}")
     typer.echo(f"languages   {', '.join(entry.languages)}")
     typer.echo(f"scenarios   {', '.join(entry.runs_in)}")
+    for label, said in trail.of_task(entry):
+        typer.echo(f"{label:<11} {said}")
     for name, lines in halves.items():
         typer.echo(f"\n{name} half")
         for label, said in lines:

@@ -28,10 +28,12 @@ from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.proof.hand_over import Ground
-from automotive_cosim.run.difficulty import RECORD, Difficulties, Difficulty, Outcomes, fingerprint, read, write
+from automotive_cosim.run.coverage import is_outdated
+from automotive_cosim.run.difficulty import RECORD, Difficulties, Difficulty, Outcomes, read, write
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import choose
 from automotive_cosim.run.rows import read_trials
+from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -241,7 +243,8 @@ def correlation(one: Reals, other: Reals) -> float:
 
 
 def outcomes_of(folders: Sequence[Path], name: str = "") -> dict[str, Outcomes]:
-    """The outcomes of evaluations; trials with an error do not count, nor those of agents that are told the answer.
+    """The outcomes of evaluations; no trials count that ended in an error, of halves that have changed since, or of
+    agents that are told the answer.
 
     Args:
         folders: result folders of ``eval``, run on the catalogue as it is.
@@ -252,7 +255,7 @@ def outcomes_of(folders: Sequence[Path], name: str = "") -> dict[str, Outcomes]:
         for row in read_trials(folder).values():
             if not isinstance(row, EpisodeRow) or row.success is None or row.error or row.agent in TOLD:
                 continue
-            if row.task in CATALOGUE:
+            if row.task in CATALOGUE and not is_outdated(row):
                 count = counts[f"{row.task}/{row.half}"][name or contestant(row.agent, row.model)]
                 count[0] += row.success
                 count[1] += 1

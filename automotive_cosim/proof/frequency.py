@@ -14,7 +14,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cache
-from hashlib import blake2b
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
@@ -25,8 +24,8 @@ from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.proof.hand_over import SEEING
 from automotive_cosim.run.plan import choose
+from automotive_cosim.tasking.fingerprint import situation
 from automotive_cosim.tasking.sets import Suite
-from automotive_cosim.tasking.task import Half
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
@@ -40,7 +39,7 @@ class Reach:
     """The seeds that one half was tried with; a seed counts with its own traffic, without an evaluation's spare."""
 
     situation: str
-    """``fingerprint`` of the half when it was measured."""
+    """``fingerprint.situation`` of the half when it was measured."""
     reached: tuple[int, ...]
     missed: tuple[int, ...] = ()
 
@@ -55,23 +54,10 @@ class Reach:
         return f"{len(self.reached)} of {len(tried)} seeds ({tried[0]} to {tried[-1]}){missed}"
 
 
-def fingerprint(half: Half) -> str:
-    """Tells whether the situation of a half is still the one that was measured: where it begins and its trigger."""
-    start = half.start
-    parts = (
-        *(getattr(start, name) for name in ("scenario", "trip", "origin", "driver", "start", "parked", "weather")),
-        *(sorted(each.items()) for each in (start.cabin, start.signals)),
-        start.arrivals,
-        sorted(start.motions),
-        *(getattr(half.trigger, name) for name in ("condition", "for_s", "within_s")),
-    )
-    return blake2b(repr(parts).encode(), digest_size=8).hexdigest()
-
-
 def measured(task_id: str, half: str) -> Reach | None:
     """What is on record of a half as it is now; None if it has changed or is not of the shipped catalogue."""
     reach = _shipped().get(f"{task_id}/{half}")
-    known = reach is not None and reach.situation == fingerprint(CATALOGUE[task_id].half(half))
+    known = reach is not None and reach.situation == situation(CATALOGUE[task_id].half(half))
     return reach if known else None
 
 
@@ -122,7 +108,7 @@ def measure(
         for seed in seeds:
             last: str | None = None
             for task_id, half in halves:
-                name, now = f"{task_id}/{half}", fingerprint(CATALOGUE[task_id].half(half))
+                name, now = f"{task_id}/{half}", situation(CATALOGUE[task_id].half(half))
                 known = record.get(name)
                 if known is None or known.situation != now:
                     known = Reach(now, ())

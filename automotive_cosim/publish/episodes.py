@@ -21,6 +21,7 @@ from automotive_cosim.publish.drives import PLANNED as DRIVE_PLANNED
 from automotive_cosim.publish.drives import UNJUDGED as DRIVE_UNJUDGED
 from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
+from automotive_cosim.run.coverage import is_outdated
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import IN_RESULT, EpisodeSetup
@@ -119,6 +120,8 @@ def _problems(folder: Path, job: TrialSetup, row: TrialRow) -> Iterator[Problem]
         return
     is_drive, told, expected = isinstance(row, DriveTrialRow), as_json(row), as_json(planned)
     yield from differences(ROWS, row.id, told, expected, DRIVE_PLANNED if is_drive else PLANNED, "the plan")
+    if isinstance(row, EpisodeRow) and is_outdated(row):
+        yield Problem(ROWS, f"{row.id} half_digest", "is not that of the half, which has changed since")
     yield from attempt_problems(row)
     if isinstance(job, EpisodeSetup) and isinstance(row, EpisodeRow):
         if job.in_scenario in _shipped() and row.scenario != job.in_scenario:

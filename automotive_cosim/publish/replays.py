@@ -36,6 +36,8 @@ from automotive_cosim.traffic.fork import Simulations
 
 OF_THE_AGENT = frozenset({"prompt_tokens", "calls", "tokens_in", "tokens_out", "cost_usd", "end"})
 """Fields of a row that the actions do not determine; the answers do, unless the last turn was cut off."""
+OF_THE_CATALOGUE = "half_digest"
+"""A field that rows of 0.2.0 lack, and that is compared with the catalogue."""
 OF_ITS_THOUGHTS = ("thought", "stages")
 """Fields of a step that the answers determine."""
 RESULT = (
@@ -182,7 +184,8 @@ def _differences(
                 yield from differences(file, f"step {number}", *told, thoughts, "its replay")
     yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
     cut_off = row.end in (End.OUT_OF_BUDGET, End.AGENT_FAILED)
-    names = [name for name in steady(row) if name not in OF_THE_AGENT or (thoughts and not cut_off)]
+    of_the_agent = frozenset() if thoughts and not cut_off else OF_THE_AGENT
+    names = [name for name in steady(row) if name not in {OF_THE_CATALOGUE, *of_the_agent}]
     yield from differences(ROWS, row.id, as_json(row), as_json(new_row), names, "its replay")
     path, kind = judged_file(folder, row.id), JudgedDrive if isinstance(row, DriveTrialRow) else Judged
     if read_judged(folder, row.id, kind) != again.judged:

@@ -237,7 +237,7 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialSetup]) -> Iterat
 
 
 def _as_of(today: Any, found: Any) -> Any:
-    """A part of a row without what that part of a line had no key for when it was written."""
+    """A row, or a part of one, without what its line had no key for when it was written."""
     if isinstance(today, dict) and isinstance(found, dict):
         return {name: value for name, value in today.items() if name in found}
     return today
@@ -259,7 +259,8 @@ def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) 
             final.add(line["id"])
         for name in line.keys() - known:
             yield Problem(ROWS, f"line {number} {name}", "is not a field of a row")
-        written = {name: _as_of(value, line.get(name)) for name, value in as_json(rows[line["id"]]).items()}
+        row = _as_of(as_json(rows[line["id"]]), line)
+        written = {name: _as_of(value, line[name]) for name, value in row.items()}
         if strict and text != json.dumps(written, ensure_ascii=False):
             yield Problem(ROWS, f"line {number}", "is not in the form in which `publish bundle` writes it")
     if strict and names != sorted(names):

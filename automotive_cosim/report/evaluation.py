@@ -26,7 +26,7 @@ from automotive_cosim.report.page import PARTS, embedded
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.policy import house_rules
 from automotive_cosim.report.results import Results, contestant, read_results
-from automotive_cosim.report.summary import PUBLISHED, errors, progress, replaced, tables
+from automotive_cosim.report.summary import PUBLISHED, errors, outdated, progress, replaced, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
@@ -159,6 +159,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.prompts(shared),
         findings.distribution(shared),
         replaced(results),
+        outdated(results),
         errors(results),
     ]
     return [table for table in made if table.rows]

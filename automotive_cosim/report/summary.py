@@ -17,6 +17,7 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.task import Dimension, Module, Subset
 from automotive_cosim.tasking.verdict import PARTS
+from automotive_cosim.tasks import CATALOGUE
 
 PAPER = "Automotive-ENV, arXiv 2509.21143, table 3: success rates in per cent, without intervals or numbers of runs"
 PAPER_COLUMNS = (
@@ -411,6 +412,17 @@ def replaced(results: Results) -> Table:
         "Their situation did not occur in the seed's own traffic, for any agent; the episode is still the seed's."
     )
     return Table("replaced", "Spare traffic", ("Episode", "Seed", "Traffic"), rows, note)
+
+
+def outdated(results: Results) -> Table:
+    """Every episode on a half of a task that has changed since."""
+    rows = tuple(
+        (Cell(row.id, (row.id,)), "; ".join(CATALOGUE[row.task].changed) if row.task in CATALOGUE else "gone")
+        for row in results.rows
+        if row.id in results.coverage.outdated
+    )
+    note = "What is said, where, or what is right there is not what it was: run them again before you compare."
+    return Table("outdated", "On tasks that have changed since", ("Episode", "What changed"), rows, note)
 
 
 def rate_of(rows: Iterable[TrialRow], of: SuccessOf = lambda row: row.outcome) -> Rate:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.trial import TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.tasking.fingerprint import fingerprint
+from automotive_cosim.tasks import CATALOGUE
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +35,8 @@ class Coverage:
     """Why it is not known what was planned; then ``not_run`` is empty."""
     nothing_due: int = 0
     """Judged drives in which nothing required an act: they say nothing about an agent."""
+    outdated: frozenset[str] = frozenset()
+    """Ids of the episodes on halves of tasks that have changed since: what was won there may be lost today."""
 
     @property
     def planned(self) -> int:
@@ -46,6 +51,7 @@ class Coverage:
     def __str__(self) -> str:
         errors = f", {counted(self.errors, 'error')}" if self.errors else ""
         errors = (f", nothing was due in {self.nothing_due:,} of them" if self.nothing_due else "") + errors
+        errors += f", {len(self.outdated):,} on tasks that have changed since" if self.outdated else ""
         if self.problem:
             known = f"{counted(self.judged, self.unit)} judged{errors}"
             return f"{known}; the rest of the plan is not known: {self.problem}"
@@ -62,8 +68,10 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
     judged = sum(row.outcome is not None for row in rows.values())
     errors, unit = len(rows) - judged, unit_of(manifest["plan"])
     idle = sum(isinstance(row, DriveTrialRow) and row.has_nothing_due for row in rows.values())
+    outdated = frozenset(row.id for row in rows.values() if isinstance(row, EpisodeRow) and is_outdated(row))
+    found = Coverage(judged, errors, shared=frozenset(rows), unit=unit, nothing_due=idle, outdated=outdated)
     if manifest.get("episodes") == len(rows):  # even if the catalogue has changed since
-        return Coverage(judged, errors, shared=frozenset(rows), unit=unit, nothing_due=idle)
+        return found
     jobs: dict[str, TrialSetup] = {}
     try:
         jobs |= {job.id: job for job in make_plan(manifest["plan"]).jobs()}
@@ -71,19 +79,26 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
     except UserError as error:
         problem = " ".join(str(error).split())
     if problem:
-        return Coverage(judged, errors, shared=frozenset(rows), unit=unit, problem=problem, nothing_due=idle)
+        return replace(found, problem=problem)
     not_run = [job for job in jobs.values() if job.id not in rows]
     waiting = {job.instance for job in not_run}
     shared = [job for job in jobs.values() if job.instance not in waiting]
-    return Coverage(
-        judged,
-        errors,
-        tuple(job.planned() for job in not_run),
-        frozenset(job.id for job in shared),
-        len({job.instance for job in shared}) if not_run else None,
-        unit,
-        nothing_due=idle,
+    return replace(
+        found,
+        not_run=tuple(job.planned() for job in not_run),
+        shared=frozenset(job.id for job in shared),
+        shared_instances=len({job.instance for job in shared}) if not_run else None,
     )
+
+
+def is_outdated(row: EpisodeRow) -> bool:
+    """Whether the half of the task has changed since, or is gone; rows of 0.2.0 do not tell."""
+    if not row.half_digest:
+        return False
+    if row.task not in CATALOGUE:
+        return True
+    task = CATALOGUE[row.task]
+    return row.half not in task.halves or fingerprint(task, row.half) != row.half_digest
 
 
 def unit_of(plan: Json) -> str:

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, is_dataclass
-from enum import Enum, StrEnum
+from dataclasses import dataclass, field
+from enum import StrEnum
 from functools import cache
-from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.tasking.catalogue import described
+from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
@@ -29,7 +29,10 @@ CORE = "core"
 
 PROGRAM, CAREFUL = "asurada, rules", "careful"
 """Contestants that the levels refer to: the rule stand-in at its ablest, and a large language model whose answers
-were given by hand through the same prompts."""
+were given by hand through the same prompts. Further such readers are called ``careful`` and a number."""
+VERIFIED = "verified"
+"""The word that selects the tasks of which at least ``READERS`` careful readers have won each half as it is."""
+READERS = 2
 
 
 class WonBy(StrEnum):
@@ -51,6 +54,12 @@ class Outcomes:
     """``fingerprint`` of the half when it was tried."""
     won: Mapping[str, tuple[int, int]]
     """By contestant, how often it won, of how many trials that ended without an error."""
+
+    @property
+    def readers(self) -> tuple[int, int]:
+        """How many careful readers have won it at least every other time, and how many have tried it."""
+        read = [2 * won >= tried for who, (won, tried) in self.won.items() if who.partition(" ")[0] == CAREFUL]
+        return sum(read), len(read)
 
     @property
     def winners(self) -> int:
@@ -85,38 +94,6 @@ class Difficulties:
     """Ids of the tasks of the core subset."""
 
 
-def fingerprint(task: Task, half: str) -> str:
-    """Tells whether a half is still the one that was tried: what is said, where, and what is right; not how."""
-    tried = task.half(half)
-    parts = (
-        task.templates,
-        task.parameters,
-        *(getattr(tried, name) for name in ("start", "trigger", "goal", "declares", "may_write", "topics")),
-        tried.deadline.seconds,
-        tried.tells,
-        tried.says,
-    )
-    return blake2b(repr(_plain(parts)).encode(), digest_size=8).hexdigest()
-
-
-def _plain(value: Any) -> Any:
-    """The same, in an order and a form that do not change from run to run."""
-    if isinstance(value, Enum | str | int | float | None):
-        return str(value)
-    if isinstance(value, type):
-        return value.__name__
-    if is_dataclass(value):
-        own = [(each.name, _plain(getattr(value, each.name))) for each in fields(value) if each.compare]
-        return [type(value).__name__, *own]
-    if isinstance(value, Mapping):
-        return sorted((str(key), _plain(each)) for key, each in value.items())
-    if isinstance(value, frozenset | set):
-        return sorted(map(str, map(_plain, value)))
-    if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
-    raise TypeError(f"{value!r} has no plain form")
-
-
 @cache
 def measured(task_id: str, half: str) -> Difficulty | None:
     """What is on record of a half as it is now; None if it has changed or is not of the shipped catalogue."""
@@ -132,6 +109,17 @@ def hardest(task: Task) -> Difficulty | None:
     return max(known, key=lambda each: each.logits) if len(known) == len(found) else None
 
 
+def verified() -> tuple[str, ...]:
+    """Ids of the tasks that ``VERIFIED`` selects."""
+    return tuple(task.id for task in CATALOGUE.values() if min(_winning_readers(task)) >= READERS)
+
+
+def _winning_readers(task: Task) -> list[int]:
+    """By half, how many careful readers have won it."""
+    found = [measured(task.id, half) for half in task.halves]
+    return [0 if each is None else each.outcomes.readers[0] for each in found]
+
+
 def level(difficulty: Difficulty | None) -> WonBy:
     """Who wins it."""
     abilities = shipped().abilities
@@ -139,7 +127,7 @@ def level(difficulty: Difficulty | None) -> WonBy:
         return WonBy.UNKNOWN
     if difficulty.logits <= abilities[PROGRAM]:
         return WonBy.PROGRAM
-    if CAREFUL not in difficulty.outcomes.won:
+    if not difficulty.outcomes.readers[1]:
         return WonBy.OPEN
     return WonBy.CAREFUL if difficulty.logits <= abilities[CAREFUL] else WonBy.FEW
 

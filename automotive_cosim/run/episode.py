@@ -41,6 +41,7 @@ from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeli
 from automotive_cosim.run.trial import Answers, TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.sets import Split
 from automotive_cosim.tasking.split import split_of
@@ -169,6 +170,7 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
             task=task.id,
             half=self.half,
             pair=self.pair,
+            half_digest=fingerprint(task, self.half),
             dimension=task.dimension,
             module=task.module,
             basis=half.basis,

@@ -42,6 +42,8 @@ class EpisodeRow(TrialRow):
     half: str
     pair: str
     """Name that both halves of a pair share; empty for a task with one half."""
+    half_digest: str = ""
+    """``fingerprint`` of the half when it ran; empty in rows of 0.2.0."""
     dimension: Dimension
     module: Module
     basis: Basis | None = None

@@ -324,7 +324,8 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
     Args:
         asked: ids, patterns, tags and so on.
         suite: the suite that patterns and tags select from, ``all``, or ``live`` for the pairs that hurry; an id
-            names its task in any, and ``core`` those of the core subset.
+            names its task in any, ``core`` those of the core subset, and ``verified`` those that careful readers
+            have won.
 
     Raises:
         UnknownNameError: there is no such suite, or a word selects none of its tasks.
@@ -336,12 +337,13 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
         for task in CATALOGUE.values()
         if suite in (ALL_SUITES, task.suite) or (suite == LIVE and task.hurries is not None)
     ]
+    drawn = {difficulty.CORE: lambda: difficulty.shipped().core, difficulty.VERIFIED: difficulty.verified}
     chosen: set[str] = set()
     for word in asked:
         named = {task.id for task in there if matches(task.id, word) or word in _words(task)}
-        named |= {word, *(difficulty.shipped().core if word == difficulty.CORE else ())} & set(CATALOGUE)
+        named |= {word, *(drawn[word]() if word in drawn else ())} & set(CATALOGUE)
         if not named:
-            known = {difficulty.CORE, *CATALOGUE}.union(*map(_words, there))
+            known = {*drawn, *CATALOGUE}.union(*map(_words, there))
             raise UnknownNameError("task, pattern or tag", word, known, "automotive-cosim tasks list")
         chosen |= named
     return tuple(task_id for task_id in CATALOGUE if task_id in chosen)

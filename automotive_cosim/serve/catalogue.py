@@ -9,6 +9,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.geo.place import shipped
+from automotive_cosim.proof import trail
 from automotive_cosim.run.difficulty import rated
 from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.tasking.parameters import FromCockpit
@@ -42,10 +43,12 @@ def task(name: str) -> Json:
     halves = []
     for half_name in found.halves:
         half = found.half(half_name)
-        halves.append({"name": half_name, "words": list(half_in_words(half)), "laws": _laws(half)})
+        words = [*half_in_words(half), *trail.of_half(found, half_name)]
+        halves.append({"name": half_name, "words": words, "laws": _laws(half)})
     return {
         **rated(found),
         "values": {each: choices_in_words(choices) for each, choices in found.parameters.items()},
+        "trail": list(trail.of_task(found)),
         "halves": halves,
     }
 

@@ -25,7 +25,7 @@ TOLD_HEARD = "Words are heard in the noise of the cabin and may be wrong; the dr
 """What an agent that hears is told at first."""
 PARDON = "What did you say?"
 """What the driver says if he did not understand the car."""
-TALKED_OVER = "The driver talked over you and took in none of it."
+TALKED_OVER = "Somebody talked over you, and the driver took in none of it."
 """What the agent is told if he did."""
 LOOK_FIRST = "The calendar and the memos may say it; what the car doesn't know, ask me."
 """What the driver adds to a wish of the suite ``clarify``, which is in English alone: where one may look."""

@@ -293,6 +293,8 @@ class Task:
     """What it is hard by; only of tasks of the hard suite."""
     guess_loses: str = ""
     """Why a guess loses, of tasks of the hard suite."""
+    changed: tuple[str, ...] = ()
+    """What changed in what is asked or right, and why; each begins with its date, as in 2026-11-29."""
 
     @property
     def languages(self) -> tuple[Language, ...]:

@@ -50,6 +50,7 @@ export async function taskPage(query, id) {
       h("h2", {}, "What the driver says"),
       h("ul", { class: "card words" }, task.goal_templates.map((words) => h("li", {}, `“${words}”`))),
       values.length > 0 && h("ul", { class: "muted" }, values),
+      h("dl", {}, task.trail.map(([label, said]) => [h("dt", {}, label), h("dd", {}, said)])),
       task.difference && h("h2", {}, "The one difference between the halves"),
       task.difference && h("p", { class: "card" }, task.difference),
       h("div", { class: "halves" }, task.halves.map((half) => h("section", { class: "card" },
