@@ -250,7 +250,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     if left_out := plan.left_out():
         table.add_row("left out", f"{_named(left_out)}: not made for these scenarios; --everywhere includes them")
     if beyond := plan.beyond_the_list():
-        table.add_row("not for tree", f"{_named(beyond)}: only the picture shows what they need")
+        table.add_row("left out", f"{_named(beyond)}: only a picture that --see withholds shows what they need")
     if unspoken := plan.unspoken():
         table.add_row(
             "left out",

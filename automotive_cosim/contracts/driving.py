@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from automotive_cosim.contracts.plain import KMH_PER_MPS, RARE
+from automotive_cosim.contracts.plain import KMH_PER_MPS, RARE, UNTRACED
 
 STANDING_BELOW_MPS = 0.1
 """A slower vehicle is stationary, as in SUMO's count of halted vehicles."""
@@ -133,6 +133,10 @@ class OtherVehicle:
     drac_mps2: float | None = None
     """Deceleration rate to avoid a crash: closing speed squared over twice the gap (Cooper and Ferguson, 1976);
     also None while the gap does not shrink."""
+    kind: str = field(default="", metadata=UNTRACED)
+    """SUMO's vehicle class, of the leader alone, which only a look through the windshield tells; so the next."""
+    is_braking: bool = field(default=False, metadata=UNTRACED)
+    """Whether its brake lamps are lit."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,9 @@ MPH_PER_MPS = 3600 / 1609.344
 RARE = {"rare": True}
 """Metadata of a field that traces leave out where it is None: it came later than traces on record."""
 
+UNTRACED = {"untraced": True}
+"""Metadata of a field that traces leave out: judges may read it, and nothing simulated depends on it."""
+
 Json = dict[str, Any]
 """A JSON object: the edge of the package, where types end."""
 

@@ -7,7 +7,7 @@ report tables, the leaderboard and the doors loop over ``TABLE``; only what the 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, make_dataclass, replace
 from enum import StrEnum
 from itertools import product
@@ -38,6 +38,7 @@ from automotive_cosim.contracts.given import (
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.docs import field_docs
+from automotive_cosim.tasking.task import NEEDS_PICTURE, NEEDS_ROAD
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,12 +215,20 @@ class Conditions:
         Raises UserError: there is no such condition or value."""
         return cls(**{name: condition(name).value(value) for name, value in values.items()})
 
-    @property
-    def hides_pictures(self) -> str:
-        """Why an agent sees no picture that it would have to open; empty if it does."""
+    def hides(self, tags: Collection[str]) -> str:
+        """What an agent does not see of what a task with these tags needs, and what to do; empty if it sees all."""
+        if NEEDS_ROAD in tags and self.see is not See.CAMERA:
+            return f"the view of the road, which see = {self.see} leaves out; give see = camera"
+        if NEEDS_PICTURE not in tags:
+            return ""
+        touch = "give see = both, interface = touch"
         if not self.interface.touches:
-            return f"interface = {self.interface} cannot open"
-        return f"see = {self.see} withholds" if Channel.SCREENSHOT in self.see.withheld else ""
+            return f"the picture, which interface = {self.interface} cannot open; {touch}"
+        return (
+            f"the picture, which see = {self.see} withholds; {touch}"
+            if Channel.SCREENSHOT in self.see.withheld
+            else ""
+        )
 
     def at(self, seed: int) -> Conditions:
         """The conditions of the episode with a seed."""

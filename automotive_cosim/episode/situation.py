@@ -81,8 +81,8 @@ class SituationFinder:
         """
         spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
-        if self.task.needs_picture and (why := spec.conditions.hides_pictures):
-            raise UserError(f"{self.task.id} needs the picture, which {why}; give see = both, interface = touch")
+        if hidden := spec.conditions.hides(self.task.tags):
+            raise UserError(f"{self.task.id} needs {hidden}")
         half = self.task.half(spec.half)
         start = half.start
         if spec.conditions.language is not Language.ENGLISH:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Action, BoundingBox, Element, Feedback, Json
-from automotive_cosim.contracts.plain import RARE
+from automotive_cosim.contracts.plain import RARE, UNTRACED
 from automotive_cosim.cosim.moment import Moment
 
 STATES = ("traffic", "signals", "elements")
@@ -154,7 +154,7 @@ def _names(kind: type) -> _Names | None:
     if not is_dataclass(kind):
         return None
     rare = tuple(field.name for field in fields(kind) if field.metadata == RARE)
-    return _Names(tuple(field.name for field in fields(kind)), rare)
+    return _Names(tuple(field.name for field in fields(kind) if field.metadata != UNTRACED), rare)
 
 
 _ENCODER = json.JSONEncoder(sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)

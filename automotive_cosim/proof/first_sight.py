@@ -42,6 +42,7 @@ class Facet(StrEnum):
     CABIN = "air and glass of the cabin"
     ABOARD = "who is aboard"
     SETTINGS = "the settings"
+    UNITS = "the units"
     CAR = "the rest of the car"
 
 
@@ -57,6 +58,7 @@ FREED: Mapping[Differs, frozenset[Facet]] = {
     Differs.TIME: frozenset({Facet.CLOCK, Facet.LIGHT, Facet.SIGN, *_DRIVING}),
     Differs.MOTION: frozenset({Facet.GEAR, *_DRIVING}),
     Differs.SETTINGS: frozenset({Facet.SETTINGS, Facet.CABIN}),
+    Differs.UNITS: frozenset({Facet.UNITS}),
     Differs.EVENTS: frozenset(),
     Differs.ABOARD: frozenset({Facet.ABOARD, Facet.CABIN}),
     Differs.VOICE: frozenset({Facet.WORDS}),
@@ -120,6 +122,9 @@ _ELEMENTS: Mapping[str, frozenset[Facet]] = {
 }
 """What elements follow from, by the beginning of their resource id; the first that fits. Streets have the names of
 their place."""
+_IN_UNITS = ("home.speed", "status.speed", "home.sign", "status.limit_sign", "home.turn", "home.r", "map.",
+    "status.outside_temperature", "home.outside", "home.cabin", "dock.")  # fmt: skip
+"""Elements with figures that the display's units change."""
 _MAP = frozenset({Facet.VIEW, Facet.PLACE})
 """Elements without a name: the streets on the map."""
 _LINES: Mapping[str, frozenset[Facet]] = {
@@ -212,6 +217,7 @@ def _on_screen(elements: tuple[Element, ...], signals: Mapping[str, Any]) -> Ite
         name = key_of(element.resource_id)
         counts[name] = counts.get(name, 0) + 1
         causes = next(found for begin, found in _ELEMENTS.items() if name.startswith(begin)) if name else _MAP
+        causes |= {Facet.UNITS} if name.startswith(_IN_UNITS) else set()
         told = f"{name or 'map'} {counts[name]}"
         yield f"box of {told}", (causes | {Facet.PLACE}, element.bbox_pixels)  # the driver's side
         element = replace(element, bbox_pixels=_NOWHERE)

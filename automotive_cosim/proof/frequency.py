@@ -22,6 +22,7 @@ from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.proof.hand_over import SEEING
 from automotive_cosim.run.plan import choose
 from automotive_cosim.tasking.fingerprint import situation
 from automotive_cosim.tasking.sets import Suite
@@ -134,7 +135,7 @@ def _traffic(entry: tuple[str, str]) -> str:
 
 
 def _is_reached(task_id: str, half: str, seed: int, simulations: Simulations) -> bool:
-    finder = SituationFinder(EpisodeSpec(task_id, half, seed=seed), simulations)
+    finder = SituationFinder(EpisodeSpec(task_id, half, seed=seed, conditions=SEEING), simulations)
     try:
         finder.find(SeedSource(seed).next()).world.close()
     except TriggerNotReachedError:

@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.signals import named
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
-from automotive_cosim.contracts.given import CarMake
+from automotive_cosim.contracts.given import CarMake, See
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
@@ -32,6 +32,8 @@ from automotive_cosim.tasking.ways import units_in
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.future import SharedFuture
 
+SEEING = Conditions(see=See.CAMERA)
+"""No task lacks anything that is seen."""
 SETUP = SessionSetup(ALL - {Channel.SCREENSHOT})
 """Every channel except the screenshot, which shows what the elements list."""
 
@@ -135,7 +137,9 @@ class Ground:
         Raises:
             TriggerNotReachedError, TrafficError: see ``SituationFinder.find``.
         """
-        finder = SituationFinder(EpisodeSpec(task.id, half_name, scenario, seed=seed), simulations, task=task)
+        finder = SituationFinder(
+            EpisodeSpec(task.id, half_name, scenario, seed=seed, conditions=SEEING), simulations, task=task
+        )
         if coarse:
             finder.scenario = replace(finder.scenario, sumo=finder.scenario.sumo.stepping(1.0))
         hand_over = finder.find(SeedSource(seed).next())

@@ -163,7 +163,7 @@ def _side_by_side(results: Results, condition: Condition) -> Table:
     ]
     note = condition.words.note
     if condition.name == "see" and (beyond := results.beyond_the_list):
-        note += f" Left out: {counted(len(beyond), 'task')} in which something needed is only in the picture."
+        note += f" Left out: {counted(len(beyond), 'task')} in which something needed is only in a picture."
     columns = ("Contestant", *map(condition.told, shown))
     name = f"by_{condition.word}"
     return Table(name, condition.words.title, columns, tuple(rows), f"{note} All halves. {RATES}")

@@ -22,7 +22,7 @@ from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_evaluation
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
-from automotive_cosim.tasking.task import NEEDS_PICTURE
+from automotive_cosim.tasking.task import NEEDS_PICTURE, NEEDS_ROAD
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -112,12 +112,13 @@ class Results:
 
     @property
     def beyond_the_list(self) -> tuple[str, ...]:
-        """Tasks not given to contestants that see no pictures, because they need one."""
+        """Tasks not given to contestants that see no pictures, or not the road, because they need that."""
         plan = self.manifest["plan"]
-        sees, interfaces = plan.get("see", ()), plan.get("interface", ())
-        if not {See.TREE, See.NOTHING} & set(sees) and Interface.FUNCTIONS not in interfaces:
-            return ()
-        given = (row for row in (*self.rows, *self.not_run) if NEEDS_PICTURE in row.tags)
+        sees, interfaces = set(plan.get("see", ())), plan.get("interface", ())
+        hidden = {NEEDS_ROAD} if sees - {See.CAMERA} else set[str]()
+        if {See.TREE, See.NOTHING} & sees or Interface.FUNCTIONS in interfaces:
+            hidden.add(NEEDS_PICTURE)
+        given = (row for row in (*self.rows, *self.not_run) if hidden & set(row.tags))
         return tuple(sorted({row.task for row in given}))
 
     def of(self, each: Contestant) -> tuple[EpisodeRow, ...]:

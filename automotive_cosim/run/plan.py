@@ -17,7 +17,7 @@ from automotive_cosim.agents import MODELLED, Agent, AgentSettings, is_remote, m
 from automotive_cosim.cockpit import tree
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import Clock, Hearing
+from automotive_cosim.contracts.given import Clock, Hearing, See
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
@@ -228,9 +228,10 @@ class Plan(EvaluationSettings):
 
     def beyond_the_list(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that some conditions leave out: something needed is only in the picture."""
-        if not any(conditions.hides_pictures for conditions in combined(self)):
-            return ()
-        return tuple(task_id for task_id in self._chosen() if CATALOGUE[task_id].needs_picture)
+        under = tuple(combined(self))
+        return tuple(
+            task_id for task_id in self._chosen() if any(each.hides(CATALOGUE[task_id].tags) for each in under)
+        )
 
     def unheard(self) -> int:
         """How many episodes would end at once because what is said can neither be looked up nor recognised."""
@@ -243,8 +244,9 @@ class Plan(EvaluationSettings):
     def _nowhere(self) -> str:
         if not self._chosen():
             return f"no drive with these seeds is in the split {self.split!r}; give other seeds"
-        if self._placed() and all(task.needs_picture for task, _ in self._placed()):
-            return "these tasks need the picture, which these conditions hide; give see = both, interface = touch"
+        hidden = [each.hides(task.tags) for task, _ in self._placed() for each in combined(self)]
+        if hidden and all(hidden):
+            return f"these tasks need {hidden[0]}"
         if not self.spoken():
             return (
                 f"none of the tasks has phrasings in {languages_in_words(self.languages)}; those of the "
@@ -286,7 +288,7 @@ class Plan(EvaluationSettings):
     def unfolded(self) -> Iterator[PlannedTrial]:
         """The trials that the lists stand for."""
         for (task, place), seed, conditions in product(self._placed(), self.seeds, combined(self)):
-            for half in () if task.needs_picture and conditions.hides_pictures else task.halves:
+            for half in () if conditions.hides(task.tags) else task.halves:
                 yield PlannedTrial(
                     task=task.id,
                     half=half,
@@ -395,6 +397,8 @@ def make_plan(values: Mapping[str, Any]) -> Plan:
     Raises UserError: a field is unknown, missing, empty or of the wrong type."""
     if values.get("suite") == LIVE:  # there, what a model needs to think passes on the road
         values = {"clock": [str(Clock.MODEL)], **values}
+    if values.get("suite") == Suite.CAMERA:
+        values = {"see": [str(See.CAMERA)], **values}
     plan = checked(Plan, values, lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:
         raise UserError('the plan has no agent; give agents = ["asurada"] in the file, or --agents asurada')

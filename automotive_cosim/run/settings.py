@@ -33,8 +33,9 @@ class EvaluationSettings(ConditionLists):
     `all`; none beside drives and `[[trials]]` unless given."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
     """The suite they are chosen from: `standard`, `hard`, `limits`, `clarify`, `speed`, `voice`, `people` or
-    `all`; or `live`, the pairs of all suites in which road or people do not wait, by `--clock model` unless it
-    says otherwise. An id selects a task in any suite, and `core` sixty."""
+    `all`; `camera`, by `--see camera` unless it says otherwise; or `live`, the pairs of all suites in which road
+    or people do not wait, by `--clock model` unless it says otherwise. An id selects a task in any suite, and
+    `core` sixty."""
     drives: tuple[str, ...] = ()
     """Drives, instead of tasks or beside those that are named: families, patterns such as `grid_*`, scenarios,
     seasons or `all`."""

@@ -29,6 +29,8 @@ TALKED_OVER = "Somebody talked over you, and the driver took in none of it."
 """What the agent is told if he did."""
 LOOK_FIRST = "The calendar and the memos may say it; what the car doesn't know, ask me."
 """What the driver adds to a wish of the suite ``clarify``, which is in English alone: where one may look."""
+AS_SEEN = "Go by what's in front of us as I say this."
+"""The same of the suite ``camera``, whose signals change."""
 ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""
 WORDS_PER_S = 2.5

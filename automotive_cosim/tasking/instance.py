@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.text import Quantity
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.tasking.dialogue import LOOK_FIRST, Says, Topic
+from automotive_cosim.tasking.dialogue import AS_SEEN, LOOK_FIRST, Says, Topic
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.moves import Consult, Hear, Inform, Move, Tap, TapUntil
 from automotive_cosim.tasking.parameters import KEEP, Choices, FromCockpit, Parameter, bind, rebuilt
@@ -126,7 +126,7 @@ def phrased(
     """
     voice = task.half(half_name).start.voice
     prefix = "" if voice is Seat.DRIVER else f"From the {voice.words} seat: "
-    suffix = f" {LOOK_FIRST}" if task.suite is Suite.CLARIFY else ""
+    suffix = {Suite.CLARIFY: f" {LOOK_FIRST}", Suite.CAMERA: f" {AS_SEEN}"}.get(task.suite, "")
     if language is Language.ENGLISH:
         return tuple(prefix + template.format_map(parameters) + suffix for template in task.templates)
     own = speech(task, language)

@@ -21,6 +21,8 @@ class Suite(StrEnum):
     said in the same words in many places: evidence for rows of a protocol rather than new kinds of wishes."""
     VOICE = "voice"
     """Pairs in which the cabin's sound decides, or who said it; they are run with ``--hear cabin``."""
+    CAMERA = "camera"
+    """Pairs in which something seen through the windshield alone decides; they are run with ``--see camera``."""
     PEOPLE = "people"
     """Pairs in which those aboard react to what they notice, or have told the car what holds over four weeks."""
 

@@ -34,6 +34,9 @@ from automotive_cosim.tasking.triggers import Trigger
 NEEDS_PICTURE = "picture"
 """The tag of tasks in which something needed is in the picture alone: the list of elements does not tell it."""
 
+NEEDS_ROAD = "windshield"
+"""The tag of tasks in which something needed is seen through the windshield alone."""
+
 
 class Module(StrEnum):
     """The eight modules of the cockpit (paper, figure of task distributions)."""
@@ -136,6 +139,8 @@ class Differs(StrEnum):
     """Parked or moving."""
     SETTINGS = "settings"
     """How the car is set before it departs."""
+    UNITS = "units"
+    """What the display counts in before it departs."""
     EVENTS = "events"
     """Calls, messages, remarks and changes of the car after the hand-over."""
     ABOARD = "occupants"
@@ -345,7 +350,8 @@ class Task:
         halves = (self.first, self.second)
         if any(half.says for half in halves):
             return Hurry.WORDS
-        if any(arrival.kind == "call" for half in halves for arrival in half.start.arrivals):
+        events = (each for half in halves for each in (*half.start.arrivals, *half.start.interruptions))
+        if any(isinstance(each, Arrival) and each.kind == "call" for each in events):
             return Hurry.CALL
         is_short = min(half.deadline.seconds for half in halves) <= HURRIED_S
         return Hurry.ROAD if is_short and not any(half.start.parked for half in halves) else None

@@ -298,6 +298,22 @@ def slow_leader_within(moment: Moment, speed_kmh: float, distance_m: float) -> b
     return leader is not None and leader.gap_m <= distance_m and leader.speed_mps * KMH_PER_MPS <= speed_kmh
 
 
+@situation("a {kind} in front within {distance_m:g} m")
+def leader_is(moment: Moment, kind: str, distance_m: float) -> bool:
+    """A vehicle of a class of SUMO's (``passenger``, ``truck``, ``delivery``) in front within a distance."""
+    leader = moment.driving.around.leader
+    return leader is not None and leader.kind == kind and leader.gap_m <= distance_m
+
+
+@situation(
+    lambda distance_m, lit: f"in front within {distance_m:g} m, brake lamps that are {'lit' if lit else 'dark'}"
+)
+def leader_brakes(moment: Moment, distance_m: float, lit: bool = True) -> bool:
+    """A vehicle in front within a distance, whose brake lamps are lit, or are not."""
+    leader = moment.driving.around.leader
+    return leader is not None and leader.is_braking is lit and leader.gap_m <= distance_m
+
+
 @situation("a car behind within {distance_m:g} m")
 def follower_within(moment: Moment, distance_m: float) -> bool:
     """A vehicle behind within a distance."""
@@ -350,6 +366,13 @@ def red_light(moment: Moment, within_m: float) -> bool:
     """The next signal on the route shows red, within a distance."""
     light = moment.driving.ahead.next_light
     return light is not None and light.state in "rR" and light.distance_m <= within_m
+
+
+@situation("a green light within {within_m:g} m")
+def green_light(moment: Moment, within_m: float) -> bool:
+    """The next signal on the route shows green, within a distance."""
+    light = moment.driving.ahead.next_light
+    return light is not None and light.state in "gG" and light.distance_m <= within_m
 
 
 # --- sky, place, position fix and connection ---

@@ -87,6 +87,8 @@ Light = tuple[str, str, float]
 
 Other = tuple[str, float, float, float]
 """Id, gap, speed and closing speed of another vehicle."""
+Leader = tuple[str, float, float, float, str, bool]
+"""The same of the one in front, with its class and whether its brake lamps are lit."""
 
 
 @dataclass(slots=True)
@@ -113,7 +115,7 @@ class Seen:
     position_m: float
     """Along the route."""
     light: Light | None
-    leader: Other | None
+    leader: Leader | None
     follower: Other | None
     oncoming: Other | None
     emergency_behind: Other | None
@@ -183,10 +185,13 @@ class Seen:
         )
 
 
-def other_vehicle(vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: float) -> OtherVehicle:
+def other_vehicle(
+    vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: float, kind: str = "", is_braking: bool = False
+) -> OtherVehicle:
     """Adds time to collision and DRAC; ``closing_mps`` is positive while the gap shrinks."""
     gap_m = max(0.0, gap_m)
-    if closing_mps <= 1e-3:
-        return make_other(vehicle_id, gap_m, speed_mps, None, None)
-    needed_mps2 = drac_mps2(max(TOUCHING_M, gap_m), closing_mps)
-    return make_other(vehicle_id, gap_m, speed_mps, time_to_collision_s(gap_m, closing_mps), needed_mps2)
+    ttc_s = needed_mps2 = None
+    if closing_mps > 1e-3:
+        ttc_s = time_to_collision_s(gap_m, closing_mps)
+        needed_mps2 = drac_mps2(max(TOUCHING_M, gap_m), closing_mps)
+    return make_other(vehicle_id, gap_m, speed_mps, ttc_s, needed_mps2, kind, is_braking)

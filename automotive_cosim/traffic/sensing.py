@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from automotive_cosim.contracts import STANDING_BELOW_MPS, Limit, LimitSource, RoadIncident
+from automotive_cosim.contracts import STANDING_BELOW_MPS, Limit, LimitSource, RoadIncident, SumoSignal
 from automotive_cosim.traffic.congestion import Congestion, Route
 from automotive_cosim.traffic.georeference import GeoReference
-from automotive_cosim.traffic.instant import Lane, Light, Other, Seen
+from automotive_cosim.traffic.instant import Lane, Leader, Light, Other, Seen
 from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS, Edge, Network
 from automotive_cosim.traffic.sumo import LibSumo
 
@@ -193,13 +193,18 @@ class Sensor:
         tls_id, link, stop_line_m = self._light
         return tls_id, self._sumo.light_state(tls_id)[link], max(0.0, stop_line_m - self.position_m)
 
-    def _leader(self, speed_mps: float) -> Other | None:
+    def _leader(self, speed_mps: float) -> Leader | None:
         """Gap from the ego's bumper; SUMO's excludes the minimum gap."""
         found = self._sumo.leader(self._ego, LEADER_RANGE_M)
         if found is None or not found[0] or abs(found[1]) > NO_GAP_M:
             return None
         other_mps = self._sumo.speed(found[0])
-        return found[0], found[1] + self._min_gap_m, other_mps, speed_mps - other_mps
+        return found[0], found[1] + self._min_gap_m, other_mps, speed_mps - other_mps, *self._looks(found[0])
+
+    def _looks(self, vehicle: str) -> tuple[str, bool]:
+        """Class of a vehicle in front, and whether its brake lamps are lit."""
+        sumo = self._sumo
+        return sumo.vehicle_class(vehicle), bool(sumo.vehicle.getSignals(vehicle) & SumoSignal.BRAKE)
 
     def _own_side(self, edge_id: str, opposite_m: float) -> tuple[str, str, float]:
         """Edge, lane and position on the car's own side of the road while it overtakes in the opposite lane, whose
@@ -207,7 +212,7 @@ class Sensor:
         edge = self._network.edges[edge_id]
         return edge_id, edge.lane_ids[-1], max(0.0, edge.length_m - opposite_m)
 
-    def _overtaken(self, index: int) -> Other | None:
+    def _overtaken(self, index: int) -> Leader | None:
         """The next vehicle on the own side, which SUMO does not tell while the car is on the other. It is not in
         the car's way, so they do not close in."""
         sumo, ego_m = self._sumo, self.position_m
@@ -222,7 +227,8 @@ class Sensor:
             front_m, nearest = min((each for each in ahead if each[0] > 0), default=(math.inf, ""))
             if nearest:
                 gap_m = front_m - sumo.length(nearest)
-                return (nearest, gap_m, sumo.speed(nearest), 0.0) if gap_m <= LEADER_RANGE_M else None
+                told = (nearest, gap_m, sumo.speed(nearest), 0.0, *self._looks(nearest))
+                return told if gap_m <= LEADER_RANGE_M else None
         return None
 
     def _follower(self, speed_mps: float) -> Other | None:

@@ -20,7 +20,7 @@ import numpy as np
 from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import write_whole
-from automotive_cosim.tasking.dialogue import LOOK_FIRST
+from automotive_cosim.tasking.dialogue import AS_SEEN, LOOK_FIRST
 from automotive_cosim.voice import engines
 
 TABLE = Path(__file__).with_name("heard.json.xz")
@@ -66,7 +66,8 @@ def heard(text: str, snr_db: float) -> str:
 def pieces(text: str) -> Iterator[str]:
     """The parts of a text that are said and recognised by themselves, in order."""
     text = _FROM.sub("", text, count=1)
-    rest = text.removesuffix(LOOK_FIRST).strip()
+    added = next((each for each in (LOOK_FIRST, AS_SEEN) if text.endswith(each)), "")
+    rest = text.removesuffix(added).strip()
     piece: list[str] = []
     for sentence in _SENTENCE.split(rest) if rest else ():
         if piece and len(" ".join([*piece, sentence]).split()) > MOST_WORDS:
@@ -75,8 +76,8 @@ def pieces(text: str) -> Iterator[str]:
         piece.append(sentence)
     if piece:
         yield " ".join(piece)
-    if text.endswith(LOOK_FIRST):
-        yield LOOK_FIRST
+    if added:
+        yield added
 
 
 def lacking(texts: Iterable[str]) -> list[str]:

@@ -32,6 +32,13 @@ def test_a_law_that_says_otherwise_is_named_as_the_reason() -> None:
     assert "the law of Germany answers differently" in finder._lacking()
 
 
+def test_a_task_that_needs_the_view_of_the_road_is_refused_without_it() -> None:
+    seeing = Conditions(see=See.CAMERA)
+    SituationFinder(EpisodeSpec("camera_mode_by_the_signal", conditions=seeing), cast("Any", None))
+    with pytest.raises(UserError, match="view of the road, which see = both leaves out; give see = camera"):
+        SituationFinder(EpisodeSpec("camera_mode_by_the_signal"), cast("Any", None))
+
+
 def test_a_task_that_needs_the_picture_is_refused_without_it() -> None:
     for see in (See.PICTURE, See.BOTH):
         SituationFinder(EpisodeSpec("hard_theos_pump", conditions=Conditions(see=see)), cast("Any", None))

@@ -4,7 +4,7 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim import scenarios
-from automotive_cosim.contracts.given import Clock
+from automotive_cosim.contracts.given import Clock, See
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.hidden import commitment, drawn, read_key
@@ -53,6 +53,15 @@ def test_the_suite_live_is_of_pairs_that_hurry_and_has_the_model_s_clock_unless_
     assert plan(suite="live", clock=["fixed"]).clock == (Clock.FIXED,)
     assert make_plan(plan(suite="live", clock=["fixed"]).as_json()).clock == (Clock.FIXED,)
     assert plan(suite="hard").clock == (Clock.FIXED,)
+
+
+def test_the_suite_camera_is_run_with_the_view_of_the_road_and_left_out_without_it():
+    assert plan(suite="camera").see == (See.CAMERA,)
+    assert not plan(suite="camera").beyond_the_list()
+    blind = plan(suite="camera", see=["both"])
+    assert set(blind.beyond_the_list()) == set(choose(["all"], "camera"))
+    with pytest.raises(UserError, match="see = camera"):
+        blind.check(dry=True)
 
 
 def test_a_suite_bounds_words_but_not_ids():
@@ -299,7 +308,7 @@ def test_what_only_the_picture_tells_is_not_planned_for_the_list_alone():
     mixed = plan(tasks=["picture", "hard_which_nora"], suite="hard", see=["tree", "both"])
     assert set(mixed.beyond_the_list()) == pictured
     assert {job.task for job in mixed.jobs() if job.conditions.see == "tree"} == {"hard_which_nora"}
-    with pytest.raises(UserError, match="need the picture, which these conditions hide"):
+    with pytest.raises(UserError, match="need the picture, which see = tree withholds"):
         plan(tasks=["picture"], suite="hard", see=["tree"]).check(dry=True)
 
 

@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from automotive_cosim.tasking.dialogue import LOOK_FIRST
+from automotive_cosim.tasking.dialogue import AS_SEEN, LOOK_FIRST
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import HELD, Instance, draw, instances
 from automotive_cosim.tasking.task import Task
@@ -33,7 +33,11 @@ def space(task: Task) -> int:
 
 def words(instance):
     """The goal without the seat that it comes from, and without where one may look."""
-    return re.sub(r"^From the [a-z ]+ seat: ", "", instance.goal).removesuffix(f" {LOOK_FIRST}")
+    return (
+        re.sub(r"^From the [a-z ]+ seat: ", "", instance.goal)
+        .removesuffix(f" {LOOK_FIRST}")
+        .removesuffix(f" {AS_SEEN}")
+    )
 
 
 @pytest.mark.parametrize("number", NUMBERS)

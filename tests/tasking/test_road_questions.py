@@ -19,9 +19,17 @@ from automotive_cosim.contracts import (
     Reroute,
     RoadRequest,
     SlowDown,
+    TrafficLight,
 )
 from automotive_cosim.tasking.checks import AlertGiven, road_asked
-from automotive_cosim.tasking.triggers import out_of_range, slow_leader_within
+from automotive_cosim.tasking.triggers import (
+    green_light,
+    leader_brakes,
+    leader_is,
+    out_of_range,
+    red_light,
+    slow_leader_within,
+)
 
 
 def moment(leader: OtherVehicle | None = None, range_m: float = 0.0, left_m: float = 0.0) -> Any:
@@ -45,6 +53,28 @@ def test_a_slow_leader_is_near_and_slow(gap_m: float, speed_mps: float, holds: b
     slow = slow_leader_within(25.0, 200.0)
     assert slow(moment(OtherVehicle("other", gap_m, speed_mps, None))) is holds
     assert not slow(moment())
+
+
+def test_what_leads_is_told_by_its_class_and_its_brake_lamps():
+    lorry = moment(OtherVehicle("other", 40.0, 20.0, None, kind="truck", is_braking=True))
+    assert leader_is("truck", 40.0)(lorry)
+    assert not leader_is("passenger", 40.0)(lorry)
+    assert not leader_is("truck", 39.0)(lorry)
+    assert leader_brakes(40.0)(lorry)
+    assert not leader_brakes(40.0, False)(lorry)
+    assert not leader_brakes(39.0)(lorry)
+    assert not any(holds(moment()) for holds in (leader_is("truck", 40.0), leader_brakes(40.0, False)))
+
+
+@pytest.mark.parametrize(
+    ("state", "is_red", "is_green"), [("r", True, False), ("G", False, True), ("y", False, False)]
+)
+def test_a_signal_is_red_or_green_or_neither(state: str, is_red: bool, is_green: bool):
+    now = moment()
+    now.driving.ahead.next_light = TrafficLight("light", state, 50.0)
+    assert (red_light(60.0)(now), green_light(60.0)(now)) == (is_red, is_green)
+    assert not red_light(49.0)(now)
+    assert not green_light(49.0)(now)
 
 
 def test_out_of_range_compares_with_the_way_left():

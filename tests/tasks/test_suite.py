@@ -10,7 +10,7 @@ from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasking.checks import SignalIs
-from automotive_cosim.tasking.dialogue import LOOK_FIRST
+from automotive_cosim.tasking.dialogue import AS_SEEN, LOOK_FIRST
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.task import Basis, Differs, Dimension
 from automotive_cosim.tasks import CATALOGUE
@@ -63,9 +63,10 @@ def test_what_is_right_in_one_half_is_wrong_in_the_other(task):
 
 
 def heard(instance):
-    """The words without the seat that they come from, and without where one may look."""
+    """The words without the seat that they come from, and without what a suite adds."""
     voice = instance.half.start.voice
-    return instance.goal.removeprefix(f"From the {voice.words} seat: ").removesuffix(f" {LOOK_FIRST}")
+    said = instance.goal.removeprefix(f"From the {voice.words} seat: ")
+    return said.removesuffix(f" {LOOK_FIRST}").removesuffix(f" {AS_SEEN}")
 
 
 @over(task for task in TASKS if task.second)
@@ -138,7 +139,7 @@ CHANGES = {
     "origin": {Differs.PLACE},
     "start": {Differs.DATE, Differs.TIME},
     "parked": {Differs.MOTION},
-    "signals": {Differs.SETTINGS},
+    "signals": {Differs.SETTINGS, Differs.UNITS},
     "weather": {Differs.WEATHER, Differs.VISIBILITY},
     "trip": {Differs.ROAD, Differs.TRAFFIC},
     "driver": {Differs.TRAFFIC, Differs.ROAD},
