@@ -27,7 +27,7 @@ def test_only_what_the_view_shows_tells_the_halves_apart(task):
     assert task.first.goal != task.second.goal or task.first.tells != task.second.tells or task.second.reasons
 
 
-def test_ten_pairs_ask_for_a_look_and_nobody_else_does():
+def test_some_pairs_ask_for_a_look_and_nobody_else_does():
     assert len(CATALOGUE.of(Suite.CAMERA)) >= 10
     assert not [
         task.id for task in CATALOGUE.values() if NEEDS_ROAD in task.tags and task.suite is not Suite.CAMERA
