@@ -25,7 +25,7 @@ class Here:
     job: Any = None
     count: int = 1
     is_ready: bool = True
-    stage: JobPhase = field(default_factory=JobPhase)
+    phase: JobPhase = field(default_factory=JobPhase)
 
     @property
     def handles(self) -> list[Any]:

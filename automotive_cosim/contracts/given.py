@@ -26,6 +26,11 @@ ALL = frozenset(Channel) - {Channel.CAMERA}
 """Those that an agent is given unless it or its user says otherwise."""
 PLACE = frozenset({Channel.GPS, Channel.CONTEXT})
 
+NEEDS_PICTURE = "picture"
+"""The tag of tasks in which something needed is in the picture alone: the list of elements does not tell it."""
+NEEDS_ROAD = "windshield"
+"""The tag of tasks in which something needed is seen through the windshield alone."""
+
 
 class GeoInput(StrEnum):
     """What an agent is told about its place; ``interface.controls`` has a table."""

@@ -18,6 +18,8 @@ from annotated_types import Ge, Le, MinLen
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import (
+    NEEDS_PICTURE,
+    NEEDS_ROAD,
     OWN_MAKE,
     OWN_PROMPT,
     CarMake,
@@ -38,7 +40,6 @@ from automotive_cosim.contracts.given import (
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.docs import field_docs
-from automotive_cosim.tasking.task import NEEDS_PICTURE, NEEDS_ROAD
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import Interface, See
+from automotive_cosim.contracts.given import NEEDS_PICTURE, NEEDS_ROAD, Interface, See
 from automotive_cosim.contracts.plain import counted, model_and_options
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import SetupError, UserError, install_hint
@@ -22,7 +22,6 @@ from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_evaluation
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
-from automotive_cosim.tasking.task import NEEDS_PICTURE, NEEDS_ROAD
 
 if TYPE_CHECKING:
     import pandas as pd

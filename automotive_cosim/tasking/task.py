@@ -22,6 +22,7 @@ from automotive_cosim.cockpit.missing_parts import Lacking
 from automotive_cosim.cockpit.occupants import Occupant, Seat
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
+from automotive_cosim.contracts.given import NEEDS_PICTURE
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.checks import Check, asked_in
 from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic
@@ -30,12 +31,6 @@ from automotive_cosim.tasking.parameters import Choices, names
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.triggers import Trigger
-
-NEEDS_PICTURE = "picture"
-"""The tag of tasks in which something needed is in the picture alone: the list of elements does not tell it."""
-
-NEEDS_ROAD = "windshield"
-"""The tag of tasks in which something needed is seen through the windshield alone."""
 
 
 class Module(StrEnum):
