@@ -1,6 +1,6 @@
 """The table of what is heard of what drivers say, made with the extra ``voice``.
 
-    python -m automotive_cosim.proof.heard --seeds 3 --minutes 5
+    python -m automotive_cosim.proof.heard --seeds 6 --minutes 5
 
 says and recognises what the table does not have yet: wishes at the seeds from 0, remarks and answers, in English.
 Run it again to go on; it ends early when everything is there.

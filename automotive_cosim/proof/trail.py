@@ -28,7 +28,7 @@ from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
 RECORD = Path(__file__).with_name("passed.json")
-UNKNOWN = "not measured since it last changed"
+UNKNOWN = "not on record for what it is now"
 
 
 @dataclass(frozen=True, slots=True)
