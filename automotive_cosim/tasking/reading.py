@@ -14,24 +14,16 @@ family: one task for each of its tables, named after both, which say what differ
 
 from __future__ import annotations
 
-import inspect
-import operator
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
-from datetime import date, time
-from enum import Enum
+from dataclasses import dataclass, fields
 from functools import cache
 from importlib.resources import files
-from itertools import chain, pairwise
-from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Any
 
-from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.occupants import company
-from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats import bounds
@@ -39,20 +31,12 @@ from automotive_cosim.formats.checked import Steps
 from automotive_cosim.formats.toml import Document
 from automotive_cosim.tasking import notation
 from automotive_cosim.tasking.checks import Check, nothing_done
+from automotive_cosim.tasking.decoding import WITH_COLUMN, decoder, entries, joined, keys, mapping, several
 from automotive_cosim.tasking.moves import Move
-from automotive_cosim.tasking.notation import (
-    PLACEHOLDER,
-    Placeholder,
-    Quoted,
-    Word,
-    checked,
-    hints,
-    signal_named,
-)
+from automotive_cosim.tasking.notation import hints
 from automotive_cosim.tasking.parameters import Choices, FromCockpit, Param
 from automotive_cosim.tasking.speech import Lexicon, Speech
 from automotive_cosim.tasking.task import Basis, Half, Start, Task
-from automotive_cosim.tasking.triggers import TriggerCondition
 
 DEFAULT, NAMES = "default", "names"
 """Tables of a file that are no tasks."""
@@ -62,8 +46,6 @@ IS, LIKE = "is", "like"
 """Of any table: further fields of it, to have several on a line; and the name of what it is like besides."""
 EACH = "each"
 """Of a task's table: what its family's members are like, by the ends of their names."""
-COMPANY = "company"
-"""Written for ``aboard``: one to four adults, the driver among them, drawn as the parameter ``occupants``."""
 OCCUPANTS = (1, 2, 3, 4)
 INHERITED = ("start", "trigger", "deadline", "basis", "topics", "neutral", "may_write")
 """What a second half takes from the first unless it says otherwise; the rest is what is right, and its own."""
@@ -252,7 +234,7 @@ class _Reader:
                 self.steps = (name,)
                 raise UnknownNameError("field of a task", name, _KNOWN)
         known = hints(Task)
-        for name, choices in _dict(given.get("parameters", {})).items():
+        for name, choices in mapping(given.get("parameters", {})).items():
             self.steps = ("parameters", name)
             self._declare(name, choices)
         made = {name: self._at(name, given[name], known[name]) for name in _OF_TASK if name in given}
@@ -277,10 +259,10 @@ class _Reader:
         columns = self.table(choices, {}) if isinstance(choices, Mapping) else {OF: choices}
         if OF not in columns:
             raise UserError(f"lacks {OF!r}, the values that are drawn")
-        self._parameters[name] = tuple(_list(columns[OF]))
+        self._parameters[name] = tuple(entries(columns[OF]))
         self._means[name] = columns
         for column, values in columns.items():
-            if len(_list(values)) != len(columns[OF]):
+            if len(entries(values)) != len(columns[OF]):
                 raise UserError(f"has {len(columns[OF])} values and {len(values)} of {column!r}")
 
     def _column(self, name: str, column: str) -> Sequence[Any]:
@@ -316,7 +298,7 @@ class _Reader:
         }
         if "may_write" in given:
             self.steps = (*steps, "may_write")
-            made["may_write"] = _keys(self, given["may_write"])
+            made["may_write"] = keys(self, given["may_write"])
         self._topics = made.get("topics", ())
         self.steps = (*steps, "start")
         made["start"] = self.decode(self.table(given["start"], {}), Start)
@@ -372,7 +354,7 @@ class _Reader:
                 raise UserError(
                     f"says {said[:60]!r} for {told[:60]!r}; expected {{}} up to {MOST_HOLES} times in both"
                 )
-        return Lexicon.of({**self._shared.lines[language], **{told: _joined(said) for told, said in own.items()}})
+        return Lexicon.of({**self._shared.lines[language], **{told: joined(said) for told, said in own.items()}})
 
     # --- values -------------------------------------------------------------------------------------------
 
@@ -382,7 +364,7 @@ class _Reader:
 
     def decode(self, value: Any, hint: Any) -> Any:
         """A value of a type, from what is written."""
-        return _decoder(hint)(self, value)
+        return decoder(hint)(self, value)
 
     def named(self, value: Any) -> Any:
         """What a name stands for; anything else is itself."""
@@ -427,7 +409,7 @@ class _Reader:
     def text(self, told: str, name: str) -> Param:
         """A text with what a drawn value means in it."""
         made = {choice: self._put(told, name, choice) for choice in self._choices(name)}
-        for column in {found[2] for found in _WITH_COLUMN.finditer(told) if found[1] == name}:
+        for column in {found[2] for found in WITH_COLUMN.finditer(told) if found[1] == name}:
             for choice, value in zip(made, self._column(name, column), strict=True):
                 made[choice] = self._put(made[choice], f"{name}.{column}", value)
         return Param(name, made)
@@ -460,300 +442,7 @@ _KNOWN = ("templates", "parameters", "second", *_OF_TASK, *_OF_HALF, *FOREIGN)
 """The keys of a task's table."""
 
 
-def several(told: Any) -> tuple[str, ...]:
-    """Several texts, as a list or parted by ``SEPARATOR`` in one that may go on over lines."""
-    return tuple(_joined(told).split(SEPARATOR) if isinstance(told, str) else map(str, _list(told)))
-
-
-SEPARATOR = " / "
-
-
-def _joined(told: str) -> str:
-    """A text without ends of lines: a space for each, but between Japanese characters none."""
-    if "\n" not in told:
-        return told
-    lines = [*filter(None, map(str.strip, told.split("\n")))]
-    ends = ("" if one[-1] > _WIDE and other[0] > _WIDE else " " for one, other in pairwise(lines))
-    return "".join(chain.from_iterable(zip(lines, chain(ends, ("",)), strict=False)))
-
-
-_WIDE = "\u3000"
-"""The first of the characters that are written without spaces."""
-
-
 def _parted(told: str) -> tuple[str, str]:
     """``law: FR.rear_fog``: what it is, and the rest."""
-    kind, _, rest = _joined(told).partition(": ")
+    kind, _, rest = joined(told).partition(": ")
     return kind, rest
-
-
-# --- decoders of types ----------------------------------------------------------------------------------------
-
-_Decoder = Callable[[_Reader, Any], Any]
-_TEXTS = (str, Quoted, Word)
-_WITH_COLUMN = re.compile(r"\{([a-z_]\w*)\.(\w+)\}")
-
-
-@cache
-def _decoder(hint: Any) -> _Decoder:
-    """Reads values of a type; placeholders everywhere, names where no text is expected."""
-    read = hint if inspect.isfunction(hint) else _reads(hint)
-    is_text = hint is str or (get_origin(hint) is Annotated and get_args(hint)[0] is str)
-
-    def decode(reader: _Reader, value: Any) -> Any:
-        kind = type(value)
-        if kind is hint and kind is not str:
-            return value
-        if kind in _TEXTS and "{" in value:
-            found = PLACEHOLDER.fullmatch(value) if kind is str else None
-            if found is not None and (found[2] or not is_text):
-                return reader.parameter(found[1], found[2] or "", hint)
-            if (is_text or hint is Any) and (found := _WITH_COLUMN.search(value)) is not None:
-                return reader.text(value, found[1])
-        elif kind is Placeholder:
-            return reader.parameter(value.name, value.column, hint)
-        elif kind is dict and value.keys() == {"param"}:
-            return reader.parameter(value["param"], "", hint)
-        return read(reader, value)
-
-    return decode
-
-
-def _reads(hint: Any) -> _Decoder:
-    origin, inner = get_origin(hint), get_args(hint)
-    if origin is Annotated:
-        return _limited(inner[0], inner[1:])
-    if isinstance(hint, Signal):
-        return lambda reader, value: checked(hint, value)
-    if hint is Signal or origin is Signal:
-        return lambda reader, value: signal_named(value)
-    if hint is Check:
-        return lambda reader, value: notation.goal(value, reader.decode)
-    if hint is TriggerCondition:
-        return lambda reader, value: notation.condition(value, reader.decode)
-    if origin in (Union, UnionType):
-        return _either([each for each in inner if each is not NoneType], NoneType in inner)
-    if origin is Literal:
-        return _one_of(inner)
-    if origin is tuple:
-        return _listed(inner)
-    if origin is frozenset:
-        item = _decoder(inner[0])
-        return lambda reader, value: frozenset(item(reader, each) for each in _list(reader.named(value)))
-    if hint is Any:
-        return lambda reader, value: _plain(reader, value)
-    if isinstance(hint, type) and issubclass(hint, Enum):
-        return _member(hint)
-    if isinstance(hint, type) and is_dataclass(hint):
-        return _class(hint)
-    if origin is not None and issubclass(origin, Mapping):
-        item = _decoder(inner[1])
-        return lambda reader, value: {
-            name: item(reader, each) for name, each in _dict(reader.named(value), pairs=True).items()
-        }
-    return _scalar(hint)
-
-
-def _scalar(kind: type[Any]) -> _Decoder:
-    def read(reader: _Reader, value: Any) -> Any:
-        if type(value) is kind:
-            return _joined(value) if kind is str else value
-        if kind is float and type(value) is int:
-            return float(value)
-        if kind is str and isinstance(value, str):
-            return _joined(str(value))
-        if kind is str and isinstance(value, date | time):
-            return value.isoformat()
-        raise UserError(f"is {value!r}; it must be {_WORDS.get(kind, kind.__name__)}")
-
-    return read
-
-
-_WORDS = {str: "a text", float: "a number", int: "a whole number", bool: "true or false"}
-
-
-def _limited(kind: Any, limits: Sequence[Any]) -> _Decoder:
-    """Of a type with limits (``annotated_types``), or with the signals for names."""
-    read = _decoder(kind)
-    if any(getattr(each, "what", "") == "signal" for each in limits):
-        return lambda reader, value: _key(value)
-
-    def decode(reader: _Reader, value: Any) -> Any:
-        found = read(reader, value)
-        for each in limits:
-            for name, (told, holds) in _LIMITS.items():
-                bound = getattr(each, name, None)
-                if bound is not None and not isinstance(found, Param) and not holds(found, bound):
-                    raise UserError(f"is {value!r}; it must be {told} {bound:g}")
-        return found
-
-    return decode
-
-
-_LIMITS: Mapping[str, tuple[str, Callable[[Any, Any], bool]]] = {
-    "gt": ("above", operator.gt),
-    "ge": ("at least", operator.ge),
-    "lt": ("below", operator.lt),
-    "le": ("at most", operator.le),
-}
-
-
-def _either(kinds: Sequence[Any], may_lack: bool) -> _Decoder:
-    readers = [_decoder(kind) for kind in kinds]
-
-    def read(reader: _Reader, value: Any) -> Any:
-        if may_lack and (value is None or value == "none"):
-            return None
-        for number, each in enumerate(readers, 1):
-            try:
-                return each(reader, value)
-            except (UserError, TypeError):
-                if number == len(readers):
-                    raise
-                reader.below.clear()
-        return None
-
-    return read if len(readers) > 1 or may_lack else readers[0]
-
-
-def _one_of(values: Sequence[Any]) -> _Decoder:
-    def read(reader: _Reader, value: Any) -> Any:
-        if value not in values:
-            raise UnknownNameError("value", str(value), map(str, values))
-        return str(value) if isinstance(value, str) else value
-
-    return read
-
-
-def _member(kind: type[Enum]) -> _Decoder:
-    members = {str(member.value): member for member in kind}
-
-    def read(reader: _Reader, value: Any) -> Any:
-        if value not in members:
-            raise UnknownNameError(kind.__name__.lower(), str(value), members)
-        return members[value]
-
-    return read
-
-
-def _listed(inner: Sequence[Any]) -> _Decoder:
-    if len(inner) != 2 or inner[1] is not Ellipsis:
-        items = [_decoder(each) for each in inner]
-
-        def read(reader: _Reader, value: Any) -> Any:
-            found = _list(value)
-            if len(found) != len(items):
-                raise UserError(f"has {len(found)} entries; it must have {len(items)}")
-            return tuple(item(reader, each) for item, each in zip(items, found, strict=True))
-
-        return read
-    item = _decoder(inner[0])
-    return lambda reader, value: tuple([item(reader, each) for each in _list(reader.named(value))])
-
-
-def _list(value: Any) -> Sequence[Any]:
-    if not isinstance(value, list | tuple):
-        raise UserError(f"is {value!r}; it must be a list")
-    return value
-
-
-def _dict(value: Any, *, pairs: bool = False) -> Mapping[str, Any]:
-    """A table, or with ``pairs`` a list of names with their values, which may go on over lines."""
-    if pairs and isinstance(value, list):
-        return dict(value)
-    if not isinstance(value, Mapping):
-        raise UserError(f"is {value!r}; it must be a table")
-    return value
-
-
-def _plain(reader: _Reader, value: Any) -> Any:
-    """A value of no particular type."""
-    if isinstance(value, Quoted | Word):
-        return str(value)
-    if isinstance(value, list):
-        return [reader.decode(each, Any) for each in value]
-    if isinstance(value, dict):
-        return {name: reader.decode(each, Any) for name, each in value.items()}
-    return value
-
-
-def _class(kind: type[Any]) -> _Decoder:
-    decoders: Mapping[str, _Decoder] = {
-        name: _SPECIAL.get((kind.__name__, name)) or _decoder(hint) for name, hint in hints(kind).items()
-    }
-    needed = notation.needed(kind)
-
-    def read(reader: _Reader, value: Any) -> Any:
-        value = value if kind.__name__ == "Topic" and isinstance(value, Quoted) else reader.named(value)
-        if isinstance(value, Quoted):
-            return reader.topic(value)
-        if isinstance(value, list):
-            if len(value) > len(decoders):
-                raise UserError(f"has {len(value)} entries; {kind.__name__} has {', '.join(decoders)}")
-            value = dict(zip(decoders, value, strict=False))
-        given = reader.table(value, {})
-        for name in given:
-            if name not in decoders:
-                raise UnknownNameError(f"field of {kind.__name__}", name, decoders)
-        for name in needed:
-            if name not in given:
-                raise UserError(f"lacks {name!r}: {kind.__name__} has {', '.join(decoders)}")
-        made, name = {}, ""
-        try:
-            for name, each in given.items():
-                made[name] = decoders[name](reader, each)
-        except UserError:
-            reader.below.insert(0, name)
-            raise
-        return kind(**made)
-
-    return read
-
-
-# --- fields that are more than their type says ----------------------------------------------------------------
-
-
-def _key(value: Any) -> str:
-    """A key of ``Moment.commands``: a signal's name stands for its path."""
-    if isinstance(value, str) and value[:1].isupper():
-        return signal_named(value).path
-    return str(value)
-
-
-def _keys(reader: _Reader, value: Any) -> frozenset[str]:
-    return frozenset(map(_key, _list(reader.named(value))))
-
-
-def _by_path(reader: _Reader, value: Any) -> Any:
-    """Values of signals: ``HVAC.FAN_SPEED = 100 and HVAC.AUTO = true``."""
-    return notation.values_of_signals(value if "=" in value or not value else reader.named(value), reader.decode)
-
-
-def _cabin(reader: _Reader, value: Any) -> Any:
-    known, made = hints(CabinStart), {}
-    for name, each in _dict(reader.named(value)).items():
-        if name not in known:
-            raise UnknownNameError("initial condition of the cabin", name, known)
-        made[name] = reader.decode(each, known[name])
-    return made
-
-
-def _aboard(reader: _Reader, value: Any) -> Any:
-    return reader.company() if value == COMPANY else _decoder(hints(Start)["aboard"])(reader, value)
-
-
-_SPECIAL: dict[tuple[str, str], _Decoder] = {
-    ("Start", "signals"): lambda reader, value: _mapped(reader, value, _by_path),
-    ("Start", "sensors"): lambda reader, value: _mapped(reader, value, _by_path),
-    ("Start", "cabin"): _cabin,
-    ("Start", "aboard"): _aboard,
-    ("Says", "changed"): _keys,
-    ("Says", "unchanged"): _keys,
-}
-
-
-def _mapped(reader: _Reader, value: Any, read: _Decoder) -> Any:
-    """Signals that are drawn as a whole, or one by one."""
-    if isinstance(value, str) and (found := PLACEHOLDER.fullmatch(value)):
-        return reader.parameter(found[1], found[2] or "", read)
-    return read(reader, value)

@@ -12,8 +12,9 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, SignalIs
+from automotive_cosim.tasking.decoding import several
 from automotive_cosim.tasking.moves import Open, Tap
-from automotive_cosim.tasking.reading import moves, several
+from automotive_cosim.tasking.reading import moves
 from automotive_cosim.tasking.task import Dimension, Task
 from tests.laws import over
 
