@@ -1,10 +1,11 @@
 """The processes in which an evaluation's agents live: ``python -m automotive_cosim.agents.process DESCRIPTOR``.
 
 One process per worker, the *fork server*, imports this package and nothing of an agent's, and knows nothing of any
-episode. For each episode it forks a process, which makes one agent, is told what the driver says and what there is
-to see, and answers with actions. ``run.fork_server`` and ``run.outside`` are the other side.
+episode. For each episode, and for each car of a fleet, it forks a process, which makes one agent, is told what the
+driver says and what there is to see, and answers with actions. ``run.fork_server`` and ``run.outside`` are the other
+side.
 
-    worker ------------ fork server                 ("start", request), ("end", grace)   pickled
+    worker ------------ fork server                 ("start", request), ("end", pid, grace)   pickled
       |                    | forks
       '---------------- agent's process             ("goal", words), ("seen", observation), ("reply", reply)
                                                     -> channels, action, refused, spent, ask, failed      JSON
@@ -81,13 +82,13 @@ class _AskedModel:
 
 
 class _AgentServer:
-    """Starts and ends the agents' processes, one at a time."""
+    """Starts and ends the agents' processes."""
 
     def __init__(self, wire: Wire) -> None:
         """Takes over the connection to the worker."""
         self._wire = wire
-        self._child = 0
-        self._folder = ""
+        self._folders: dict[int, str] = {}
+        """Working folders of the agents that live, by their processes."""
 
     def run(self) -> None:
         take_orphans()  # of an agent, which end here
@@ -95,21 +96,19 @@ class _AgentServer:
             while True:
                 kind, *arguments = self._wire.receive_object()
                 if kind == "start":
-                    self._start(*arguments)
-                    self._wire.send_json({"pid": self._child})
+                    self._wire.send_json({"pid": self._start(*arguments)})
                 else:
                     self._wire.send_json({"ended": self._end(*arguments)})
         except GoneError:
-            self._end()
-            if self._folder:  # the worker was killed, and removes it no more
-                remove(Path(self._folder))
+            for agent, folder in [*self._folders.items()]:
+                self._end(agent)
+                remove(Path(folder))  # the worker was killed, and removes it no more
 
-    def _start(self, request: AgentRequest) -> None:
-        self._end()
+    def _start(self, request: AgentRequest) -> int:
         connection = self._wire.receive_socket()
-        fork_server, self._folder = os.getpid(), request.folder
-        self._child = os.fork()
-        if not self._child:
+        fork_server = os.getpid()
+        agent = os.fork()
+        if not agent:
             self._wire.close()
             os.setsid()
             _prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -120,28 +119,46 @@ class _AgentServer:
             np.random.seed()  # noqa: NPY002  # which no fork does by itself
             live(Wire(connection), request)
         connection.close()
+        self._folders[agent] = request.folder
+        return agent
 
-    def _end(self, grace_s: float = 0.0) -> str:
-        """Ends the agent's process and all that it has started.
+    def _end(self, agent: int, grace_s: float = 0.0) -> str:
+        """Ends an agent's process and all that it has started.
+
+        Orphans do not tell whose they were: while others live, those of an agent are let be that are not of its
+        session.
 
         Args:
+            agent: its process.
             grace_s: time in which it may still end by itself.
 
         Returns:
             How it ended by itself; empty if it did not.
         """
-        if not self._child:
+        if self._folders.pop(agent, None) is None:
             return ""
-        child, self._child = self._child, 0
         how, end_s = "", time.monotonic() + grace_s
         while not how and time.monotonic() < end_s:
-            ended, status = os.waitpid(child, os.WNOHANG)
+            ended, status = os.waitpid(agent, os.WNOHANG)
             how = _how(os.waitstatus_to_exitcode(status)) if ended else ""
             time.sleep(0.0 if ended else POLL_S)
         with suppress(ProcessLookupError, PermissionError):
-            os.killpg(child, signal.SIGKILL)
-        end_all(lambda: children() or [child])  # it, its orphans, and theirs
+            os.killpg(agent, signal.SIGKILL)
+        end_all(lambda: self._left_by(agent))
         return how
+
+    def _left_by(self, agent: int) -> list[int]:
+        """The children of this process that are of an agent that ends: it, its orphans, and theirs."""
+        found = children() or [agent]
+        return [pid for pid in found if pid == agent or (pid not in self._folders and self._is_alone_or_of(agent, pid))]
+
+    def _is_alone_or_of(self, agent: int, pid: int) -> bool:
+        if not self._folders:
+            return True
+        try:
+            return os.getsid(pid) == agent
+        except ProcessLookupError:
+            return False
 
 
 def live(wire: Wire, request: AgentRequest) -> NoReturn:

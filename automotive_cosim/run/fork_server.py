@@ -26,7 +26,7 @@ WITHHELD_NAMES = frozenset({"PWD", "OLDPWD", "_", "PYTHONSTARTUP", "PYTHONINSPEC
 
 
 class ForkServer:
-    """Agents' processes, one at a time. A worker has one; closing it ends them all."""
+    """Agents' processes. A worker has one fork server; closing it ends them all."""
 
     def __init__(self) -> None:
         self._popen: subprocess.Popen[bytes] | None = None
@@ -34,8 +34,8 @@ class ForkServer:
         self._known: frozenset[int] = frozenset()
         """This process's children before the fork server was started."""
 
-    def start(self, request: AgentRequest) -> Wire:
-        """Starts an agent's process and returns the connection to it.
+    def start(self, request: AgentRequest) -> tuple[Wire, int]:
+        """Starts an agent's process; returns the connection to it, and its id.
 
         Raises InfrastructureError: that did not work, twice."""
         for _ in range(2):  # the first fork server may have been killed since the last episode
@@ -44,11 +44,11 @@ class ForkServer:
             self.close()
         raise InfrastructureError("no process can be started for the agent; rerun the command to resume")
 
-    def end(self, grace_s: float = 0.0) -> str:
-        """Ends the agent's process and all that it has started; returns how it ended, if by itself."""
+    def end(self, agent: int, grace_s: float = 0.0) -> str:
+        """Ends an agent's process and all that it has started; returns how it ended, if by itself."""
         if self._wire is not None:
             try:
-                self._wire.send_object(("end", grace_s), END_S)
+                self._wire.send_object(("end", agent, grace_s), END_S)
                 return str(self._wire.receive_json(grace_s + END_S).get("ended", ""))
             except (GoneError, TimeoutError, ValueError):
                 pass
@@ -66,7 +66,7 @@ class ForkServer:
         self._wire = self._popen = None
         end_all(lambda: strangers(self._known))  # orphans of an agent that has ended the fork server
 
-    def _forked(self, request: AgentRequest) -> Wire:
+    def _forked(self, request: AgentRequest) -> tuple[Wire, int]:
         if self._wire is None:
             take_orphans()
             self._known = frozenset(children())
@@ -77,11 +77,10 @@ class ForkServer:
             self._wire.send_socket(theirs)
         agent = Wire(ours)
         try:
-            self._wire.receive_json(ANSWER_S)
+            return agent, int(self._wire.receive_json(ANSWER_S)["pid"])
         except BaseException:
             agent.close()
             raise
-        return agent
 
 
 def _started() -> tuple[Wire, subprocess.Popen[bytes]]:

@@ -100,6 +100,7 @@ class OutsideAgent:
         self._replies: list[ModelReply] = []
         """What its model said in this turn."""
         self._wire: Wire | None = None
+        self._process = 0
         self._folder: Path | None = None
         self._channels: frozenset[Channel] | None = None
 
@@ -162,7 +163,7 @@ class OutsideAgent:
             )
         elif is_remote(self.name):
             request = replace(request, settings=self._settings)
-        self._wire = self._fork_server.start(request)
+        self._wire, self._process = self._fork_server.start(request)
 
     def _hello(self) -> frozenset[Channel]:
         self._step_left_s = self._episode_s
@@ -258,7 +259,7 @@ class OutsideAgent:
             return ""
         self._wire.close()
         self._wire = None
-        return self._fork_server.end(grace_s)
+        return self._fork_server.end(self._process, grace_s)
 
 
 def _messages(told: list[Json]) -> list[ChatMessage]:

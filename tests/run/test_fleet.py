@@ -102,7 +102,7 @@ def driven(simulations: Simulations, tmp_path_factory: pytest.TempPathFactory) -
     with closing(ForkServer()) as fork_server:
         here = Here(simulations, fork_server)
         here.answer = lambda: run_job(here.job, here.folder, Pictures.ALL, simulations, fork_server)  # type: ignore[method-assign]
-        plan = make_plan({"agents": ["rule-perfect", "silent"], "drives": ["grid_june"], "seeds": [2],
+        plan = make_plan({"agents": ["rule-perfect", "asurada"], "drives": ["grid_june"], "seeds": [2],
                           "settings": {"minutes": 0.4, "cars": 3}})  # fmt: skip
         end = run_plan(plan, folder, executor=here)
     assert (end.planned, end.done, end.errors) == (2, 2, 0)
@@ -115,8 +115,9 @@ def test_rows_are_of_cars_and_a_lost_one_is_made_again(
     results = read_results(driven)
     assert str(results.coverage).startswith("6 of 6 planned drives judged")
     assert sorted((row.agent, row.car, row.seed) for row in results.drives) == [
-        (agent, car, 2 + car) for agent in ("rule-perfect", "silent") for car in range(3)
+        (agent, car, 2 + car) for agent in ("asurada", "rule-perfect") for car in range(3)
     ]
+    assert not any(row.agent_error for row in results.drives)
     assert load_results(driven).index.nunique() == 6
     assert all(read_trace(driven, row.id)[-1]["result"]["timeline"] for row in results.drives)
     again = list(regrade(driven))

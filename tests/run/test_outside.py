@@ -401,6 +401,18 @@ def test_reading_and_answering_have_one_limit(outside, observation):
         agent.act(observation("x", screenshot=screen))
 
 
+def test_agents_of_several_cars_live_side_by_side_and_end_by_themselves(outside, until):
+    agents = [outside("Forks") for _ in range(3)]
+    left = [[int(pid) for pid in agent.act(None).text.split(",")] for agent in agents]
+    agents[0].close()
+    until(lambda: not lives(left[0][0]))
+    assert all(lives(pid) for pids in left[1:] for pid in pids)
+    assert agents[1].act(None).text
+    for agent in agents[1:]:
+        agent.close()
+    assert not any(lives(pid) for pids in left for pid in pids), "an orphan outlived the last agent"
+
+
 @pytest.mark.parametrize("how", ["kill", "stop"])
 def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(outside, monkeypatch, until, how):
     monkeypatch.setattr("automotive_cosim.run.fork_server.END_S", 1.0)
