@@ -157,7 +157,9 @@ def test_report_and_pages_have_a_map_whose_cars_open(driven: Path) -> None:
         fleet = read_fleet(driven, name)
         assert fleet is not None
         assert f'href="{name}.html#car-3"' in page
-        assert (driven / f"{name}.html").read_text(encoding="utf-8").count('class="card one"') == 3
+        cars_page = (driven / f"{name}.html").read_text(encoding="utf-8")
+        assert cars_page.count('class="card one"') == 3
+        assert "A score of 0 is doing nothing" in cars_page
         assert fleet.ways.keys() == fleet.trials.keys() == {"ego", "ego.1", "ego.2"}
         assert set(fleet.trials.values()) <= rows.keys()
         cars = content.study(entry.id, "cars", name)["cars"]
