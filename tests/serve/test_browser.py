@@ -559,7 +559,7 @@ def test_a_person_and_an_agent_are_compared_down_to_a_step(
     expect(page.get_by_role("heading", level=1)).to_have_text("mine and yours")
     expect(page.locator("thead")).to_contain_text("yours: human, heron")
     expect(page.get_by_role("status")).to_contain_text("only the first 1, only the second 1")
-    page.get_by_label("Which instances").select_option("worse")
+    page.get_by_label("Which episodes").select_option("worse")
     expect(page.locator("tbody tr")).to_have_count(1)
     expect(page).to_have_url(re.compile("show=worse"))
     page.get_by_role("link", name="step by step").click()
