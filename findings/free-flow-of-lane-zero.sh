@@ -19,10 +19,12 @@ import libsumo as sumo
 sumo.start("sumo -n a.net.xml --no-step-log".split())
 print(f"{sumo.edge.getTraveltime('bc'):.0f}")
 P
-way() { if grep -q "edges=\"ab bc cd\"" "$1"; then echo straight on; else grep -q "edges=\"ab bn nc cd\"" "$1" && echo round; fi; }
+way() { grep -o 'edges="ab b[cn]' "$1" | sed 's/.*bc/straight on/; s/.*bn/round/'; }
 tried() {  # name, limit and class of the right lane
-  echo "<edges><edge id=\"ab\" from=\"a\" to=\"b\"/><edge id=\"cd\" from=\"c\" to=\"d\"/><edge id=\"bn\" from=\"b\" to=\"n\" speed=\"15\"/>
-<edge id=\"nc\" from=\"n\" to=\"c\" speed=\"15\"/><edge id=\"bc\" from=\"b\" to=\"c\" speed=\"25\" numLanes=\"2\"><lane index=\"0\" $2/></edge></edges>" > a.edg.xml
+  cat > a.edg.xml << END
+<edges><edge id="ab" from="a" to="b"/><edge id="cd" from="c" to="d"/><edge id="bn" from="b" to="n" speed="15"/>
+<edge id="nc" from="n" to="c" speed="15"/><edge id="bc" from="b" to="c" speed="25" numLanes="2"><lane index="0" $2/></edge></edges>
+END
   v/bin/netconvert -n a.nod.xml -e a.edg.xml -o a.net.xml > /dev/null
   v/bin/sumo -n a.net.xml -r a.rou.xml --vehroute-output sumo.xml --no-step-log > /dev/null
   v/bin/duarouter -n a.net.xml -r a.rou.xml -o duarouter.xml > /dev/null

@@ -17,7 +17,8 @@ sensor() { printf 'Vehicle.Doors.%s:\n  type: sensor\n  datatype: boolean\n  des
   printf 'Vehicle:\n  type: branch\n  description: Car.\nVehicle.Doors:\n  type: branch\n  description: Doors.\n'
   sensor IsLeftOpen
   sensor IsRightOpen
-  printf 'Vehicle.Doors.Lock:\n  type: actuator\n  datatype: string\n  allowed: ["LOCKED", "UNLOCKED"]\n  default: "UNLOCKED"\n  description: Lock.\n'
+  printf 'Vehicle.Doors.Lock:\n  type: actuator\n  datatype: string\n  allowed: ["LOCKED", "UNLOCKED"]\n'
+  printf '  default: "UNLOCKED"\n  description: Lock.\n'
 } > catalogue.vspec
 sensor IsRearOpen > added.vspec
 { sensor IsLeftOpen; echo '  delete: true'; } > out.vspec

@@ -124,8 +124,8 @@ def road_network(source: Path, folder: Path) -> Any:
 def _for_netconvert(source: Path, ours: Path) -> bool:
     """Makes a file of roads one that netconvert reads rightly; returns whether they keep left.
 
-    It reads no rule: roads that keep left become their mirror image, which keeps right. And it reads limits of lanes
-    alone, not those of the road.
+    It reads no rule: roads that keep left become their mirror image, which keeps right. And it reads the limits of
+    lanes alone, not those of roads.
     """
     roads = read_roads(source)
     keeps_left = any(road.keeps_left for road in roads.values())

@@ -132,9 +132,11 @@ class World:
             self._free(),
         )
         self._router = Router(self._sumo, self.network, self.congestion, SEARCHING_TYPE)
-        edges, travel_time = self.network.edges.values(), self._sumo.edge.getTraveltime
+        travel_time = self._sumo.edge.getTraveltime
         self._otherwise = [
-            each.edge_id for each in edges if abs(travel_time(each.edge_id) * each.speed_mps / each.length_m - 1) > 0.01
+            edge_id
+            for edge_id, edge in self.network.edges.items()
+            if abs(travel_time(edge_id) * edge.speed_mps / edge.length_m - 1) > 0.01
         ]
         """Edges on which SUMO's free flow is none of cars: it is lane 0's, be that for bicycles."""
         self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO, variable), scenario)
