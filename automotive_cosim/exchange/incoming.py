@@ -8,6 +8,7 @@ The ego is the cockpit's car, which SUMO's driver drives; other vehicles are inc
 
 from __future__ import annotations
 
+import math
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
@@ -23,7 +24,7 @@ from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import unread
 from automotive_cosim.exchange.positions import RoadPositions
-from automotive_cosim.exchange.roads import mirror, read_roads
+from automotive_cosim.exchange.roads import OpenDriveRoad, mirror, read_roads
 from automotive_cosim.exchange.storyboard import ReadStory, ScriptEntity, Waited, read_story
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import copy, write_whole
@@ -123,20 +124,36 @@ def road_network(source: Path, folder: Path) -> Any:
 def _for_netconvert(source: Path, ours: Path) -> bool:
     """Makes a file of roads one that netconvert reads rightly; returns whether they keep left.
 
-    It reads no rule: roads that keep left become their mirror image, which keeps right.
+    It reads no rule: roads that keep left become their mirror image, which keeps right. And it reads the limits of
+    lanes alone, not those of roads.
     """
-    roads = read_roads(source).values()
-    keeps_left = any(road.keeps_left for road in roads)
-    for road in roads:
+    roads = read_roads(source)
+    keeps_left = any(road.keeps_left for road in roads.values())
+    for road in roads.values():
         if road.keeps_left != keeps_left:
             raise road.element.refused("keeps to another side than others of the file, which is not imported")
-    text = NO_TYPE.sub(rb'\1"-1"', HEIGHTS.sub(b"", ours.read_bytes()))
+    root = ET.fromstring(NO_TYPE.sub(rb'\1"-1"', HEIGHTS.sub(b"", ours.read_bytes())))
+    for element in root.iter("road"):
+        _tell_limits(element, roads[element.attrib["id"]])
     if keeps_left:
-        root = ET.fromstring(text)
         mirror(root)
-        text = ET.tostring(root)
-    write_whole(ours, text)
+    write_whole(ours, ET.tostring(root))
     return keeps_left
+
+
+def _tell_limits(element: ET.Element, road: OpenDriveRoad) -> None:
+    """States the limits of a road for its lanes, up to where they state their own."""
+    limits = sorted(road.limits())
+    sections = element.findall("lanes/laneSection")
+    ends_m = [*(float(section.attrib["s"]) for section in sections[1:]), road.length_m]
+    for section, end_m in zip(sections, ends_m, strict=True):
+        from_m = float(section.attrib["s"])
+        here = {max(0.0, at_m - from_m): mps for at_m, mps in limits if at_m < end_m}
+        for lane in section.iterfind("*/lane"):
+            own_m = min((float(speed.get("sOffset", "0")) for speed in lane.iter("speed")), default=math.inf)
+            for offset_m, mps in here.items():
+                if offset_m < own_m:
+                    ET.SubElement(lane, "speed", sOffset=repr(offset_m), max=repr(mps))
 
 
 # --- writing -----------------------------------------------------------------------------------------------------

@@ -250,7 +250,7 @@ class RoadPositions:
         edges = [first]
         for goal in goals:
             target = self.lane_at(goal, is_goal=True)[0].getEdge()
-            found, _ = self.net.getShortestPath(edges[-1], target, vClass="passenger")
+            found, _ = self.net.getFastestPath(edges[-1], target, vClass="passenger")
             if found is None:
                 raise goal.element.refused(f"cannot be reached by {name} from edge {edges[-1].getID()}")
             edges += found[1:]

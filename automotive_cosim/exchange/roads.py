@@ -5,19 +5,22 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS
 from automotive_cosim.exchange.opendrive import Pose
 from automotive_cosim.exchange.tree import XmlElement, read_tree
+from automotive_cosim.traffic.network import DERESTRICTED_MPS
 
 KEPT = frozenset((
     "road", "planView", "geometry", "line", "arc", "spiral", "poly3", "paramPoly3", "lanes", "laneOffset",
-    "laneSection", "left", "right", "lane", "width", "border",
+    "laneSection", "left", "right", "lane", "width", "border", "type", "speed",
 ))  # fmt: skip
-"""The elements that say where lanes are."""
+"""The elements that say where lanes are, and how fast one may drive."""
+_PER_MPS = {"m/s": 1.0, "km/h": KMH_PER_MPS, "mph": MPH_PER_MPS}
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 _CUBIC = "a", "b", "c", "d"
 MIRRORED: Mapping[str, tuple[str, ...]] = {
@@ -66,6 +69,17 @@ class OpenDriveRoad:
         self._geometries = element.part("planView").all("geometry")
         self._offsets = lanes.all("laneOffset")
         self._sections = lanes.all("laneSection")
+
+    def limits(self) -> Iterator[tuple[float, float]]:
+        """The limits of its types, each with the s from which on it holds, in m/s; a type without one changes
+        nothing. Raises ScenarioError: one is no speed."""
+        for kind in self.element.all("type"):
+            speed = kind.find("speed")
+            if speed is None or speed.text("max") == "undefined":
+                continue
+            free = speed.text("max") == "no limit"
+            unit = speed.word("unit", *_PER_MPS, otherwise="m/s")
+            yield kind.number("s"), DERESTRICTED_MPS if free else speed.number("max") / _PER_MPS[unit]
 
     def pose(self, s_m: float, t_m: float) -> Pose:
         """A point beside the reference line, and the line's heading there.

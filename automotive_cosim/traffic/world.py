@@ -66,6 +66,9 @@ SEARCHING_TYPE = "automotive_cosim.search"
 """A vehicle type that no vehicle has. It neither deviates in speed nor carries a device, so that no search for it
 draws a random number."""
 
+FREE_S = 1e9
+"""For this time, after all of the router's, times of free roads are written where SUMO has others."""
+
 INSERTION_LIMIT_S = 300.0
 """Limit of the simulated time that the ego waits for a gap to enter the traffic."""
 
@@ -129,6 +132,13 @@ class World:
             self._free(),
         )
         self._router = Router(self._sumo, self.network, self.congestion, SEARCHING_TYPE)
+        travel_time = self._sumo.edge.getTraveltime
+        self._otherwise = [
+            edge_id
+            for edge_id, edge in self.network.edges.items()
+            if abs(travel_time(edge_id) * edge.speed_mps / edge.length_m - 1) > 0.01
+        ]
+        """Edges on which SUMO's free flow is none of cars: it is lane 0's, be that for bicycles."""
         self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO, variable), scenario)
         self._has_incidents = self._incidents.are_left
         self._takes_any_route = takes_any_route(self._configuration, self.network)
@@ -496,10 +506,13 @@ class World:
                     f"trip {trip.name!r} of scenario {self._scenario.name!r}: the network has no edge {edge_id!r} "
                     f"that cars may use{_similar(edge_id, self.network.edges)}"
                 )
+        for edge_id in self._otherwise:
+            edge = self.network.edges[edge_id]
+            self._sumo.adapt_travel_time(edge_id, edge.length_m / edge.speed_mps, FREE_S, 2 * FREE_S)
         edges: list[str] = [trip.from_edge]
         for origin, goal in pairwise(stops):
             try:
-                found, why = self._sumo.find_route(origin, goal, SEARCHING_TYPE).edges, ""
+                found, why = self._sumo.find_route(origin, goal, SEARCHING_TYPE, FREE_S).edges, ""
             except self._sumo.refusals as error:  # no car may set out there now
                 found, why = (), f" ({error})"
             if not found:

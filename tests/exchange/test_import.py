@@ -8,13 +8,15 @@ from datetime import datetime
 import pytest
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.exchange.incoming import import_openscenario
+from automotive_cosim.exchange.incoming import import_openscenario, road_network
 from automotive_cosim.exchange.opendrive import write_opendrive
 from automotive_cosim.formats.incidents import VehicleAction
 from automotive_cosim.scenarios import load, open_scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.network import DERESTRICTED_MPS
 from automotive_cosim.traffic.options import read_configuration
+from automotive_cosim.traffic.sumo_programs import run
 
 VEHICLE = """<ScenarioObject name="{}"><Vehicle name="car" vehicleCategory="car"><BoundingBox>
 <Center x="1.35" y="0" z="0.75"/><Dimensions width="1.8" length="4.5" height="1.5"/></BoundingBox>
@@ -196,3 +198,50 @@ def test_what_is_outside_is_refused_by_name_and_line(file, tmp_path, before, aft
     with pytest.raises(ScenarioError, match=told):
         import_openscenario(file, tmp_path / "made", None if "road" in before else grid())
     assert not (tmp_path / "made").exists()
+
+
+LIMITS = """<OpenDRIVE><header revMajor="1" revMinor="7"/><road name="" length="600" id="1" junction="-1" rule="{}">
+<type s="0" type="motorway"><speed max="130" unit="km/h"/></type><type s="200" type="rural"/>
+<type s="300" type="town"><speed max="undefined"/></type>
+<type s="400" type="rural"><speed max="40" unit="mph"/></type>
+<type s="500" type="motorway"><speed max="no limit"/></type>
+<planView><geometry s="0" x="0" y="0" hdg="0" length="600"><line/></geometry></planView>
+<lanes>{}{}</lanes></road></OpenDRIVE>"""
+LIMITED = """<laneSection s="{}"><{side}><lane id="{sign}1" type="driving">
+<width sOffset="0" a="3.5" b="0" c="0" d="0"/>{}</lane></{side}>
+<center><lane id="0" type="none"/></center></laneSection>"""
+
+
+@pytest.mark.parametrize("rule", ["RHT", "LHT"])
+def test_the_limits_of_a_road_are_those_of_its_lanes_that_state_none(rule, tmp_path, sumo):
+    side = {"side": "right", "sign": "-"} if rule == "RHT" else {"side": "left", "sign": ""}
+    own = LIMITED.format(0, '<speed sOffset="50" max="20"/><speed sOffset="100" max="72" unit="km/h"/>', **side)
+    (tmp_path / "a.xodr").write_text(LIMITS.format(rule, own, LIMITED.format(250, "", **side)), "utf-8")
+    edges = sorted(road_network(tmp_path / "a.xodr", tmp_path).getEdges(), key=lambda each: each.getShape()[0])
+    limits_mps = {edge.getShape()[0][0]: edge.getSpeed() for edge in edges}
+    told = {0: 130 / 3.6, 50: 20, 250: 130 / 3.6, 400: 40 * 0.44704, 500: DERESTRICTED_MPS}
+
+    def seen(limits):
+        return [limits[max(at_m for at_m in limits if at_m <= each)] for each in range(5, 600, 10)]
+
+    assert seen(limits_mps) == pytest.approx(seen(told), abs=0.01)
+
+
+WAYS = {"in": "a b 20", "slow": "b c 5", "up": "b d 30", "down": "d c 30", "out": "c e 20"}
+
+
+def test_the_way_to_a_place_is_the_quickest(file, tmp_path, sumo):
+    nodes = {"a": (0, 0), "b": (300, 0), "c": (600, 0), "d": (450, 150), "e": (900, 0)}
+    places = "".join(f'<node id="{name}" x="{x}" y="{y}"/>' for name, (x, y) in nodes.items())
+    rows = ((name, *way.split()) for name, way in WAYS.items())
+    edges = "".join(f'<edge id="{name}" from="{a}" to="{b}" speed="{mps}"/>' for name, a, b, mps in rows)
+    (tmp_path / "a.nod.xml").write_text(f"<nodes>{places}</nodes>")
+    (tmp_path / "a.edg.xml").write_text(f"<edges>{edges}</edges>")
+    ok, printed = run("netconvert", ("-n", "a.nod.xml", "-e", "a.edg.xml", "-o", "a.net.xml"), tmp_path)
+    assert ok, printed
+    text = TEXT.replace(HERE, '<WorldPosition x="50" y="-1.6"/>').replace("1000", "800").replace("213", "-1.6")
+    there = PLACE.format('<WorldPosition x="100" y="-1.6"/>')
+    text = text.replace(PLACE.format('<WorldPosition x="420" y="231.4"/>'), there + GOAL.replace("1000", "800"))
+    file.write_text(text.replace("213", "-1.6").replace(event("moves", 4, LANES.format(1)), ""), "utf-8")
+    (other,) = load(import_openscenario(file, tmp_path / "made", tmp_path / "a.net.xml")).incidents
+    assert other.route == ("in", "up", "down", "out")

@@ -408,6 +408,18 @@ def ways(libsumo: Any) -> set[str]:
     return {libsumo.vehicle.getRoute(each)[1] for each in libsumo.vehicle.getIDList() if each.startswith("car")}
 
 
+CYCLED = '<edge id="e2" from="b" to="c" numLanes="2" speed="25"><lane index="0" allow="bicycle" speed="4"/></edge>'
+
+
+def test_a_trip_takes_the_quickest_way_whatever_the_limit_of_the_cycle_lane(tmp_path: Path) -> None:
+    """SUMO's free flow on a road is lane 0's."""
+    scenario = Road(FIRST + CYCLED + LAST + SLOW, routes="").opened(tmp_path, warm_up_s=0.0)
+    with running(scenario) as (_, world, libsumo):
+        assert libsumo.simulation.findRoute("e1", "e3").edges == ("e1", "s1", "s2", "e3")
+        depart(world, scenario)
+        assert libsumo.vehicle.getRoute(EGO) == ("e1", "e2", "e3")
+
+
 def test_a_detour_is_the_quickest_way_at_the_speeds_driven(tmp_path: Path) -> None:
     """``rerouteTraveltime`` alone goes by the limits, into the jam."""
     scenario = Road(FORK, CRAWLERS + CARS).opened(tmp_path, warm_up_s=300.0)
