@@ -17,9 +17,8 @@ from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import cannot_write, read_manifest, read_rows
-from automotive_cosim.studies.extension import HOME
 from automotive_cosim.studies.plan import plan_of
-from automotive_cosim.studies.settings import NETWORKS, RerouteSettings
+from automotive_cosim.studies.settings import HOME, NETWORKS, RerouteSettings
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,8 +9,7 @@ import typer
 from automotive_cosim.cli import RUN
 from automotive_cosim.run.extensions import ResultsKind
 
-HOME = "automotive_cosim.studies"
-COMMANDS = (("study", f"{HOME}.commands:app", RUN),)
+COMMANDS = (("study", "automotive_cosim.studies.commands:app", RUN),)
 """As in the command line."""
 
 
@@ -25,7 +24,7 @@ def add_commands(groups: Mapping[str, typer.Typer]) -> None:
 
 def kinds() -> dict[str, ResultsKind]:
     """By their words under ``study``; a command that reads no results does without the settings."""
-    from automotive_cosim.studies.settings import NETWORKS, AdoptionSettings, RerouteSettings
+    from automotive_cosim.studies.settings import HOME, NETWORKS, AdoptionSettings, RerouteSettings
 
     served = {"": f"{HOME}.adoption.served:shares", "cars": f"{HOME}.adoption.served:cars"}
     decisions = {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"}
