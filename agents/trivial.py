@@ -21,7 +21,6 @@ from automotive_cosim.contracts import (
 from automotive_cosim.interface.observe import Channel
 
 
-
 class NoOp:
     """Waits, and never declares anything."""
 

@@ -320,7 +320,7 @@ def test_the_cockpits_car_finds_its_name_free(tmp_path: Path) -> None:
     assert '<vType id="ego"' in told
 
 
-NET = '<net><location projParameter="!"/><edge id="a"/></net>'
+PLAIN = '<net><location projParameter="!"/><edge id="a"/></net>'
 
 
 class _Counted:
@@ -335,15 +335,17 @@ class _Counted:
 
 
 def test_a_file_that_was_checked_is_copied_unread_while_it_is_the_same(tmp_path: Path) -> None:
-    (tmp_path / "a.xml").write_text(NET)
+    (tmp_path / "a.xml").write_text(PLAIN)
     known, read = vet(tmp_path / "a.xml"), _Counted()
     packed = tmp_path / "b.xml.gz"
-    packed.write_bytes(gzip.compress(NET.encode()))
+    packed.write_bytes(gzip.compress(PLAIN.encode()))
     for file in (tmp_path / "a.xml", packed):
         copy = tmp_path / copy_vetted(file, tmp_path, "copy", read, known=known)
-        assert (copy.read_text(), read.count) == (NET, 0)
+        assert (copy.read_text(), read.count) == (PLAIN, 0)
         copy.unlink()
-    (tmp_path / "a.xml").write_text(NET.replace("</net>", WRITING_ELEMENTS[0].replace("@", "evil.xml") + "</net>"))
+    (tmp_path / "a.xml").write_text(
+        PLAIN.replace("</net>", WRITING_ELEMENTS[0].replace("@", "evil.xml") + "</net>")
+    )
     copy = tmp_path / copy_vetted(tmp_path / "a.xml", tmp_path, "copy", read, known=known)
     assert "evil" not in copy.read_text()
     assert read.count > 3
@@ -355,8 +357,8 @@ def test_a_file_that_was_checked_is_copied_unread_while_it_is_the_same(tmp_path:
     "element", [*WRITING_ELEMENTS, _light("NEMA"), NESTED_LIGHT, '<include href="a.net.xml"/>']
 )
 def test_a_file_that_is_not_copied_as_it_is_has_to_be_read_again(element: str, tmp_path: Path) -> None:
-    (tmp_path / "a.net.xml").write_text(NET)
-    (tmp_path / "b.xml").write_text(NET.replace("</net>", element.replace("@", "evil.xml") + "</net>"))
+    (tmp_path / "a.net.xml").write_text(PLAIN)
+    (tmp_path / "b.xml").write_text(PLAIN.replace("</net>", element.replace("@", "evil.xml") + "</net>"))
     assert vet(tmp_path / "a.net.xml")
     assert not vet(tmp_path / "b.xml")
 
