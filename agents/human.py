@@ -9,6 +9,7 @@ from typing import TextIO
 from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import T3A
 from automotive_cosim.cockpit.actions import parse
+from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -21,10 +22,9 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.interface.spaces import APPS
 
 HELP = f"""\
-  NUMBER          tap that element           open APP        {", ".join(APPS)}
+  NUMBER          tap that element           open APP        {", ".join(apps())}
   NUMBER TEXT     type into it               up, down        scroll
   home, back      go there                   wait [SECONDS]  let time pass
   alert KIND      warn the driver            ask QUESTION    ask the driver, who takes time to answer

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, check
+from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.contracts import (
     UNCALLED,
     Action,
@@ -18,7 +19,6 @@ from automotive_cosim.contracts import (
     Severity,
 )
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.interface.spaces import APPS
 
 
 class NoOp:
@@ -102,7 +102,7 @@ class Random:
         rng = self._rng
         choices: dict[str, tuple[object, ...]] = {
             "index": tuple(_touchable(observation)) or (0,),
-            "app_name": APPS,
+            "app_name": tuple(apps()),
             "direction": tuple(Direction),
             "distance_px": (50, 100, 200, 400),
             "goal_status": tuple(GoalStatus),

@@ -70,7 +70,7 @@ def test_an_episode_runs_without_it(sumo: None, core: Path, tmp_path: Path) -> N
 
 
 def test_what_it_registers_is_there() -> None:
-    kinds = [kind for each in extensions() for kind in each.KINDS.values()]
+    kinds = [kind for each in extensions() for kind in each.kinds().values()]
     assert len(kinds) == 4
     for kind in kinds:
         assert all(map(callable, map(resolve_name, (kind.page, *kind.served.values()))))

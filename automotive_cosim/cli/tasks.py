@@ -89,7 +89,7 @@ def show(
 
 
 def _chosen(words: str, suite: str) -> list[Task]:
-    from automotive_cosim.run.plan import choose
+    from automotive_cosim.run.choosing import choose
     from automotive_cosim.tasks import CATALOGUE
 
     return [CATALOGUE[task_id] for task_id in choose((word.strip() for word in words.split(",")), suite)]

@@ -30,7 +30,7 @@ def validate(tasks_from: TasksFrom = None, as_json: AsJson = False, **settings: 
     from automotive_cosim.proof.batch import prove
     from automotive_cosim.proof.prover import GATES, changed_traces, read_traces
     from automotive_cosim.proof.prover import as_json as json_of
-    from automotive_cosim.run.plan import choose
+    from automotive_cosim.run.choosing import choose
 
     told = filled(ProofSettings, settings)
     chosen = GATES if told.gates == ("all",) else told.gates

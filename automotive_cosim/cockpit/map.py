@@ -75,7 +75,7 @@ class RoadMap:
         self._tree = STRtree(lines)
         self._points = np.concatenate(shapes) if shapes else np.empty((0, 2))
         self._starts = np.cumsum([0, *(len(shape) for shape in shapes)])
-        self._rounded = np.concatenate([_bends(shape) for shape in shapes]) if shapes else np.empty(0, dtype=bool)
+        self._rounded = _bends(self._points, self._starts)
         self._middles = np.array([_middle(shape) for shape in shapes]).reshape(-1, 2)
         self._named = np.array([bool(road.name) for road in self.roads], dtype=bool)
         self._lengths = np.array([road.length_m for road in self.roads])
@@ -242,12 +242,15 @@ def _plate_width(text: str) -> int:
     return round(text_width(text, Type.SMALL)) + 16
 
 
-def _bends(shape: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    """Which points of a line need a round joint: its ends, and where it turns by more than that."""
-    steps = np.diff(shape, axis=0)
-    angles = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
-    sharp = np.abs(np.diff(angles)) > SHARP_RAD
-    return np.concatenate(([True], sharp, [True]))
+def _bends(points: npt.NDArray[np.float64], starts: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+    """Which points of lines, one after another, need a round joint: their ends, and where they turn by more than
+    that."""
+    steps = np.diff(points, axis=0)
+    turned = np.abs(np.diff(np.arctan2(steps[:, 1], steps[:, 0])))
+    rounded = np.ones(len(points), dtype=bool)
+    rounded[1:-1] = np.minimum(turned, 2 * np.pi - turned) > SHARP_RAD
+    rounded[starts[:-1]] = rounded[starts[1:] - 1] = True
+    return rounded
 
 
 def _middle(shape: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -27,9 +27,10 @@ from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.report.stats import Interval, wilson
+from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.plan import choose, families_named
+from automotive_cosim.run.plan import families_named
 from automotive_cosim.run.row import as_json, from_json
 from automotive_cosim.tasks import CATALOGUE
 

@@ -48,7 +48,7 @@ from automotive_cosim.episode.observer import Observer
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
 from automotive_cosim.interface.functions import Function, offered
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.run.plan import choose
+from automotive_cosim.run.choosing import choose
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.service import EpisodeService, EpisodeTurn
 from automotive_cosim.tasks import CATALOGUE

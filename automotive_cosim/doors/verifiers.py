@@ -36,7 +36,8 @@ from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import CosimError, InfrastructureError
 from automotive_cosim.interface.functions import Function
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.run.plan import choose, families_named
+from automotive_cosim.run.choosing import choose
+from automotive_cosim.run.plan import families_named
 from automotive_cosim.service import EpisodeService, ServiceLimits
 from automotive_cosim.tasks import CATALOGUE
 

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import reduce
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat
@@ -28,6 +27,9 @@ from automotive_cosim.drives.staging import (
 )
 from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.tasking.draws import Draws, Purpose
+
+if TYPE_CHECKING:
+    import numpy as np
 
 FIRST_S = 60.0
 """Nothing is staged before: the car is on its way and its glass, lamps and tyres have settled."""

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
-
-import numpy as np
+from typing import TYPE_CHECKING, Literal
 
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.occupants import SIGNALS, Occupant, Seat
@@ -38,6 +36,9 @@ from automotive_cosim.formats.incidents import (
     EmergencyVehicle,
 )
 from automotive_cosim.traffic.base import DriverAt, HaltAt
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,6 +40,7 @@ def scan(
     error: type[UserError],
     what: str = "XML",
     copy: Path | None = None,
+    hashed: Callable[[bytes], object] | None = None,
     most_elements: int | None = None,
 ) -> str:
     """Reads a file, also packed; returns the encoding that it declares, in lower case.
@@ -50,6 +51,7 @@ def scan(
         text: called with each piece of text between them, and its line.
         what: what the file should be, for errors.
         copy: a file to write, with the very bytes that are read, unpacked.
+        hashed: called with these bytes.
         most_elements: how many elements it may have; by default ``bounds.ELEMENTS``.
 
     Raises UserError: of that class: it cannot be read or is not such XML. What the callbacks raise passes
@@ -92,6 +94,8 @@ def scan(
             while piece := file.read(bounds.CHUNK_BYTES):
                 if target is not None:
                     target.write(piece)
+                if hashed is not None:
+                    hashed(piece)
                 parser.Parse(piece, False)
                 size += len(piece)
                 if size - parser.CurrentByteIndex > bounds.TAG_BYTES + bounds.CHUNK_BYTES:

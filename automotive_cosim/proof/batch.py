@@ -13,8 +13,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.proof.prover import GATES, Proof, Prover, proof_id
 from automotive_cosim.run.batch import BatchKind, Progress
+from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.executor import Job, Runner
-from automotive_cosim.run.plan import choose
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import Store
 from automotive_cosim.tasks import CATALOGUE
@@ -30,7 +30,7 @@ class ProofPlan:
     """The plan of a proof: every task with every seed."""
 
     tasks: tuple[str, ...]
-    """Ids, patterns, tags and so on, as for ``run.plan.choose``."""
+    """Ids, patterns, tags and so on, as for ``run.choosing.choose``."""
     seeds: tuple[int, ...]
     gates: tuple[str, ...] = GATES
 
@@ -108,7 +108,7 @@ def prove(
     """Proves every task with every seed; a proof that ends in an error is retried once.
 
     Args:
-        tasks: ids of the catalogue, or anything else that ``run.plan.choose`` accepts.
+        tasks: ids of the catalogue, or anything else that ``run.choosing.choose`` accepts.
         seeds: each determines traffic, drive, phrasing and parameters.
         chosen: gates to try.
         workers: number of processes, which does not affect the result.

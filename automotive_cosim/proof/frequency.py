@@ -23,7 +23,7 @@ from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.proof.hand_over import SEEING
-from automotive_cosim.run.plan import choose
+from automotive_cosim.run.choosing import choose
 from automotive_cosim.tasking.fingerprint import situation
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
@@ -97,7 +97,7 @@ def measure(
     The record is written after each scenario with a seed, so that a killed run loses little.
 
     Args:
-        tasks: ids of the catalogue, or anything else that ``run.plan.choose`` accepts.
+        tasks: ids of the catalogue, or anything else that ``run.choosing.choose`` accepts.
         seeds: the seeds.
         suite: the suite that the tasks are chosen from, or ``all``.
     """

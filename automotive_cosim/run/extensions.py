@@ -1,7 +1,7 @@
 """What extends the package, which knows nothing of it: a sub-package with a module ``extension``.
 
 Its ``COMMANDS`` are rows of the command line, and ``add_commands(groups)`` adds to groups of it by their names. Its
-``KINDS`` are kinds of results folder, by the word under ``study`` in the plan of a manifest. An installation
+``kinds()`` are kinds of results folder, by the word under ``study`` in the plan of a manifest. An installation
 without the sub-package lacks these and nothing else.
 """
 
@@ -16,10 +16,10 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
 
 import automotive_cosim
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
+    from automotive_cosim.contracts import Json
     from automotive_cosim.run.effect import ActEffect
 
 
@@ -80,7 +80,7 @@ def kind_of(plan: Mapping[str, Any]) -> ResultsKind | None:
     if "study" not in plan:
         return None
     for each in extensions():
-        if plan["study"] in each.KINDS:
-            kind: ResultsKind = each.KINDS[plan["study"]]
-            return kind
+        if kind := each.kinds().get(plan["study"]):
+            found: ResultsKind = kind
+            return found
     raise UserError(f"the folder has a study of kind {plan['study']!r}, which this installation cannot read")

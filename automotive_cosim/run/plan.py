@@ -30,15 +30,15 @@ from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
 from automotive_cosim.formats.words import matches
 from automotive_cosim.interface.trace import plain
-from automotive_cosim.run import difficulty
+from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.outside import check_agent
-from automotive_cosim.run.settings import ALL_SUITES, BOTH, HIDDEN, LIVE, SUITES, EvaluationSettings
+from automotive_cosim.run.settings import BOTH, HIDDEN, EvaluationSettings
 from automotive_cosim.run.trial import HUMAN, NO_MODEL, Limits, TrialSetup, digest
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.instance import draw
-from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.sets import LIVE, Suite
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.voice.table import lacking
@@ -317,35 +317,6 @@ def languages_in_words(codes: Iterable[str]) -> str:
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]:
-    """Ids of the tasks that any of the words selects, in the catalogue's order.
-
-    Args:
-        asked: ids, patterns, tags and so on.
-        suite: the suite that patterns and tags select from, ``all``, or ``live`` for the pairs that hurry; an id
-            names its task in any, ``core`` those of the core subset, and ``verified`` those that careful readers
-            have won.
-
-    Raises UnknownNameError: there is no such suite, or a word selects none of its tasks."""
-    if suite not in SUITES:
-        raise UnknownNameError("suite", suite, SUITES)
-    there = [
-        task
-        for task in CATALOGUE.values()
-        if suite in (ALL_SUITES, task.suite) or (suite == LIVE and task.hurries is not None)
-    ]
-    drawn = {difficulty.CORE: lambda: difficulty.shipped().core, difficulty.VERIFIED: difficulty.verified}
-    chosen: set[str] = set()
-    for word in asked:
-        named = {task.id for task in there if matches(task.id, word) or word in _words(task)}
-        named |= {word, *(drawn[word]() if word in drawn else ())} & set(CATALOGUE)
-        if not named:
-            known = {*drawn, *CATALOGUE}.union(*map(_words, there))
-            raise UnknownNameError("task, pattern or tag", word, known, "automotive-cosim tasks list")
-        chosen |= named
-    return tuple(task_id for task_id in CATALOGUE if task_id in chosen)
-
-
 def families_named(asked: Iterable[str]) -> tuple[str, ...]:
     """Ids of the families of drives that any of the words selects, in their order.
 
@@ -361,12 +332,6 @@ def families_named(asked: Iterable[str]) -> tuple[str, ...]:
             raise UnknownNameError("family of drives", word, FAMILIES, "automotive-cosim show drives")
         chosen |= named
     return tuple(family for family in FAMILIES if family in chosen)
-
-
-def _words(task: Task) -> frozenset[str]:
-    kind = "safety" if task.dimension.is_safety else "general"
-    ability = () if task.ability is None else (str(task.ability),)
-    return task.tags | {*ability, "all", kind, str(task.module), str(task.dimension), str(task.subset)}
 
 
 def read_plan(path: Path) -> dict[str, Any]:

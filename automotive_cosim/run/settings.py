@@ -13,10 +13,9 @@ from annotated_types import Ge, Le, MinLen
 from automotive_cosim.episode.conditions import ConditionLists
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import OneOf, Option
-from automotive_cosim.tasking.sets import Split, Suite
+from automotive_cosim.tasking.sets import SUITES, Split, Suite
 
-ALL_SUITES, LIVE, BOTH, HIDDEN = "all", "live", "both", "hidden"
-SUITES = (*Suite, ALL_SUITES, LIVE)
+BOTH, HIDDEN = "both", "hidden"
 SPLITS = (*Split, BOTH, HIDDEN)
 
 

@@ -18,7 +18,8 @@ from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import Document, read_toml
-from automotive_cosim.run.plan import choose, families_named
+from automotive_cosim.run.choosing import choose
+from automotive_cosim.run.plan import families_named
 
 FactorValue = str | float | bool
 SearchPoint = Mapping[str, FactorValue]

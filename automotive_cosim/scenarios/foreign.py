@@ -22,7 +22,7 @@ from automotive_cosim.traffic.additional import read_mapped
 from automotive_cosim.traffic.file_check import vet
 from automotive_cosim.traffic.georeference import middle
 from automotive_cosim.traffic.keeper import read_once
-from automotive_cosim.traffic.network import FORM, Network, NetworkReader
+from automotive_cosim.traffic.network import FORM, Network, NetworkReader, make_known
 from automotive_cosim.traffic.options import (
     INPUTS,
     INTERNAL,
@@ -95,8 +95,10 @@ def _as_it_is(path: Path, to_be_moved: bool, files: tuple[object, ...]) -> Scena
 
 def _read(path: Path, configuration: Configuration, *, to_be_moved: bool) -> Scenario:
     reader = NetworkReader(configuration.net)
-    vet(configuration.net, reader, FORM)
+    digest = vet(configuration.net, reader, FORM)
     network = reader.network()
+    if digest:
+        make_known(path, digest, network)
     added = _Elements()
     for name in INPUTS[1:]:
         for file in configuration.files.get(name, ()):

@@ -19,8 +19,9 @@ from annotated_types import Ge, Le, MinLen
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import read_toml
+from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.plan import Plan, choose
+from automotive_cosim.run.plan import Plan
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.serve.played import check_code_name, people_plan
 

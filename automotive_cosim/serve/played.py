@@ -26,9 +26,9 @@ from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.row import R
-from automotive_cosim.run.settings import ALL_SUITES
 from automotive_cosim.run.store import Store, opened, read_rows, replan
 from automotive_cosim.run.trial import HUMAN, Limits
+from automotive_cosim.tasking.sets import ALL_SUITES
 
 FOLDER, DRIVES = "people", "people-drives"
 """Folders of the played episodes and drives, in the first of the folders shown."""

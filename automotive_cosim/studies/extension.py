@@ -8,9 +8,8 @@ import typer
 
 from automotive_cosim.cli import RUN
 from automotive_cosim.run.extensions import ResultsKind
-from automotive_cosim.studies.settings import HOME, NETWORKS, AdoptionSettings, RerouteSettings
 
-COMMANDS = (("study", f"{HOME}.commands:app", RUN),)
+COMMANDS = (("study", "automotive_cosim.studies.commands:app", RUN),)
 """As in the command line."""
 
 
@@ -23,21 +22,20 @@ def add_commands(groups: Mapping[str, typer.Typer]) -> None:
     groups["scenarios"].command("equilibrate")(equilibrate_scenario)
 
 
-SERVED = {
-    AdoptionSettings.kind: {
-        "": f"{HOME}.adoption.served:shares",
-        "cars": f"{HOME}.adoption.served:cars",
+def kinds() -> dict[str, ResultsKind]:
+    """By their words under ``study``; a command that reads no results does without the settings."""
+    from automotive_cosim.studies.settings import HOME, NETWORKS, AdoptionSettings, RerouteSettings
+
+    served = {"": f"{HOME}.adoption.served:shares", "cars": f"{HOME}.adoption.served:cars"}
+    decisions = {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"}
+    return {
+        RerouteSettings.kind: ResultsKind(
+            f"{HOME}.reroute.page:write_study", "drive", f"{HOME}.reroute.decisions:attributed", decisions
+        ),
+        **{
+            kind: ResultsKind(
+                f"{HOME}.content:write_report", unit, served=served if kind == AdoptionSettings.kind else {}
+            )
+            for kind, (_, _, unit) in NETWORKS.items()
+        },
     }
-}
-KINDS = {
-    RerouteSettings.kind: ResultsKind(
-        f"{HOME}.reroute.page:write_study",
-        "drive",
-        f"{HOME}.reroute.decisions:attributed",
-        {"": f"{HOME}.reroute.served:decisions", "decisions": f"{HOME}.reroute.served:decision_map"},
-    ),
-    **{
-        kind: ResultsKind(f"{HOME}.content:write_report", unit, served=SERVED.get(kind, {}))
-        for kind, (_, _, unit) in NETWORKS.items()
-    },
-}

@@ -12,8 +12,10 @@ import hmac
 from dataclasses import dataclass
 from enum import StrEnum
 from hashlib import blake2b
+from typing import TYPE_CHECKING
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 SEED_LIMIT = 2**31
 """SUMO takes seeds below this."""
@@ -52,6 +54,8 @@ class Draws:
 
     def rng(self, purpose: Purpose) -> np.random.Generator:
         """The purpose's stream from its beginning."""
+        import numpy as np  # takes longer than to list what could be drawn
+
         return np.random.default_rng(self._entropy(purpose))
 
     def seed(self, purpose: Purpose) -> int:
@@ -59,6 +63,8 @@ class Draws:
         return int(self._entropy(purpose).generate_state(1)[0]) % SEED_LIMIT
 
     def _entropy(self, purpose: Purpose) -> np.random.SeedSequence:
+        import numpy as np
+
         anew = (self.redrawn,) if self.redrawn and purpose is Purpose.CONTENT else ()
         return np.random.SeedSequence(self.number, spawn_key=(_key(self.task_id), _key(purpose), *anew))
 

@@ -37,6 +37,11 @@ class Suite(StrEnum):
         return self in (Suite.HARD, Suite.PEOPLE)
 
 
+ALL_SUITES, LIVE = "all", "live"
+SUITES = (*Suite, ALL_SUITES, LIVE)
+"""What can be chosen from."""
+
+
 class Split(StrEnum):
     """The public sets of episodes."""
 

@@ -11,12 +11,15 @@ import re
 import shutil
 from codecs import StreamWriter, getwriter
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
+from hashlib import sha256
 from pathlib import Path
 from typing import Protocol
 from xml.sax.saxutils import escape, quoteattr
 
 from automotive_cosim.errors import ScenarioError, UnknownNameError
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_file, opened
 from automotive_cosim.formats.writing import drafted
 from automotive_cosim.formats.xml import SHARED_ENCODINGS, OnStart, scan
@@ -58,18 +61,24 @@ class ElementHandler(Protocol):
     def end(self, name: str) -> None: ...
 
 
-def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file") -> None:
+def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file") -> bytes:
     """Checks a network, a route file or an additional file, also packed, and the files that it names.
 
     Args:
         also: reads the file, too.
         what: what the file should be, for errors.
 
+    Returns:
+        The SHA-256 of what SUMO may read as it is, unpacked, for ``copy_vetted``; empty if a copy differs, or names
+        files.
+
     Raises:
         ScenarioError: it is not such a file, has an element or a device's parameter that is not known to write
             nothing, or names a file that is missing; with its line.
     """
-    _vet(path, None, "", (), what, also)
+    reader, seen = _Reader(path, None, "", (path.resolve(),), also), sha256()
+    encoding = _scanned(reader, what, hashed=seen.update)
+    return b"" if reader.changed or reader.found or encoding not in SHARED_ENCODINGS else seen.digest()
 
 
 def files_in(path: Path) -> tuple[Path, ...]:
@@ -84,7 +93,12 @@ def files_in(path: Path) -> tuple[Path, ...]:
 
 
 def copy_vetted(
-    path: Path, folder: Path, name: str, also: ElementHandler | None = None, what: str = "a SUMO file"
+    path: Path,
+    folder: Path,
+    name: str,
+    also: ElementHandler | None = None,
+    what: str = "a SUMO file",
+    known: bytes = b"",
 ) -> str:
     """Checks like ``vet`` and writes what SUMO may read, unpacked, into a folder.
 
@@ -94,6 +108,7 @@ def copy_vetted(
         name: what the copy is called, without an ending; copies of files that it names begin with it.
         also: reads the file, too.
         what: what the file should be, for errors.
+        known: what ``vet`` returned; while that is the content, it is copied unread.
 
     Returns:
         The copy's name in the folder.
@@ -101,7 +116,20 @@ def copy_vetted(
     Raises:
         see ``vet``.
     """
+    if known and _copied(path, folder / f"{name}.xml") == known:
+        return f"{name}.xml"
     return _vet(path, folder, name, (), what, also)
+
+
+def _copied(path: Path, copy: Path) -> bytes:
+    """Copies a file, unpacked; returns the SHA-256 of that, or nothing if it cannot be read."""
+    seen = sha256()
+    with suppress(OSError), opened(path) as given, drafted(copy) as file:
+        while piece := given.read(bounds.CHUNK_BYTES):
+            seen.update(piece)
+            file.write(piece)
+        return seen.digest()
+    return b""
 
 
 def refuse_variables(name: str, where: str) -> None:
@@ -127,13 +155,20 @@ def _vet(
         raise ScenarioError(f"{path} includes itself")
     reader = _Reader(path, folder, name, (*through, path.resolve()), also, [] if found is None else found)
     copy = None if folder is None else folder / f"{name}.xml"
-    start, end = (reader.start, reader.end) if also is None else _both(reader, also)
-    encoding = scan(path, start, end, error=ScenarioError, what=what, copy=copy)
+    encoding = _scanned(reader, what, copy=copy)
     if copy is not None and (reader.changed or encoding not in SHARED_ENCODINGS):
         with drafted(copy) as file:
             writer = _Writer(getwriter("utf-8")(file), reader.changed)
             scan(copy, writer.start, writer.end, writer.text, error=ScenarioError)
     return f"{name}.xml"
+
+
+def _scanned(
+    reader: _Reader, what: str, *, copy: Path | None = None, hashed: Callable[[bytes], object] | None = None
+) -> str:
+    """Checks a file; returns its encoding."""
+    start, end = (reader.start, reader.end) if reader.also is None else _both(reader, reader.also)
+    return scan(reader.path, start, end, error=ScenarioError, what=what, copy=copy, hashed=hashed)
 
 
 def _both(reader: _Reader, also: ElementHandler) -> tuple[OnStart, Callable[[str], None]]:

@@ -28,6 +28,7 @@ connection.
 from __future__ import annotations
 
 import math
+import pickle
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -35,6 +36,7 @@ from sys import intern
 from typing import TypeAlias
 
 from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, Road, RoadNetwork
+from automotive_cosim.contracts.roads import by_values
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.xml import read_root, scan, without_collection
 from automotive_cosim.traffic import georeference
@@ -103,6 +105,8 @@ def quantity(text: str, least: float = -LARGEST) -> float:
 class Edge:
     """One edge open to cars."""
 
+    __reduce__ = by_values
+
     edge_id: str
     from_node: str
     to_node: str
@@ -160,6 +164,8 @@ class Edge:
 @dataclass(frozen=True, slots=True)
 class Crossing:
     """The connection through a junction from one edge to the next."""
+
+    __reduce__ = by_values
 
     length_m: float
     speed_mps: float
@@ -250,16 +256,42 @@ class _Connection:
     signal: str | None
 
 
+@dataclass(frozen=True, slots=True)
+class KnownNetwork:
+    """What one process has read of a network, for another one."""
+
+    digest: bytes
+    """Of the file (``file_check.vet``)."""
+    pickled: bytes
+
+
+_KNOWN: dict[Path, KnownNetwork] = {}
+"""The last one, by the file that runs it."""
+
+
+def make_known(config: Path, digest: bytes, network: Network) -> None:
+    """Keeps what has been read for the simulation's process, which is to read it a second time otherwise."""
+    _KNOWN.clear()
+    _KNOWN[config.absolute()] = KnownNetwork(digest, pickle.dumps(network, pickle.HIGHEST_PROTOCOL))
+
+
+def known_network(config: Path) -> KnownNetwork | None:
+    """What is known of the network that a file runs."""
+    return _KNOWN.get(config.absolute())
+
+
 class NetworkReader:
     """Reads a network from its elements, in one pass over the file, which may serve others too."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, known: KnownNetwork | None = None) -> None:
         """Starts before the first element.
 
         Args:
             path: the file, for errors.
+            known: what it was when another process read it, which holds until an element comes.
         """
         self.path = path
+        self.known = known
         self._depth = 0
         self._edge: Attributes = {}
         self._lanes: list[Attributes] = []
@@ -307,6 +339,7 @@ class NetworkReader:
         elif self._depth == LANE_DEPTH + 1 and self._edge and self._lanes and attributes.get("key") == "maxspeed":
             self._lanes[-1][SIGNED] = attributes.get("value", "")
         elif self._depth == 1:
+            self.known = None
             if name != "net":
                 raise ScenarioError(f"{self.path} is not a SUMO network: its root is <{name}>, not <net>")
             self.left_hand = attributes.get("lefthand") in ("true", "1")
@@ -325,6 +358,9 @@ class NetworkReader:
         Raises:
             ScenarioError: it has no road for cars, or no valid location.
         """
+        if self.known is not None:
+            known: Network = pickle.loads(self.known.pickled)
+            return known
         if not self.edges:
             raise ScenarioError(f"{self.path} has no road that cars may use")
         try:

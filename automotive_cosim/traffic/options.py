@@ -297,7 +297,8 @@ def copied(configuration: Configuration, folder: Path, network: NetworkReader | 
     Raises:
         ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``).
     """
-    net = folder / copy_vetted(configuration.net, folder, "net-file0", network, FORM)
+    known = network.known.digest if network and network.known else b""
+    net = folder / copy_vetted(configuration.net, folder, "net-file0", network, FORM, known)
     distributions = _Distributions()
     files = {
         name: tuple(

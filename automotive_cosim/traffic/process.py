@@ -30,6 +30,7 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
 from automotive_cosim.traffic.convoy import Convoy
+from automotive_cosim.traffic.network import KnownNetwork
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.running import Running
 from automotive_cosim.traffic.sumo import load_library
@@ -101,8 +102,8 @@ class Server:
 
     # --- the calls ----------------------------------------------------------------------------------------
 
-    def do_load(self, setup: Setup, scratch: Path) -> RoadNetwork:
-        """Loads and warms up; returns the network.
+    def do_load(self, setup: Setup, scratch: Path, known: KnownNetwork | None) -> RoadNetwork:
+        """Loads and warms up; returns the network, which is not read once more if it is known.
 
         From here on this process and its copies can write only to the scratch folder, which the other side removes
         when this is done, and beside SUMO's outputs, if the kernel can see to that.
@@ -112,7 +113,7 @@ class Server:
         confine([scratch] if setup.outputs is None else [scratch, setup.outputs.parent])
         os.chdir(scratch)  # which is gone afterwards: nothing can be made under a relative name
         with without_collection():
-            world = World(setup, scratch)
+            world = World(setup, scratch, known)
         self._loaded = Running(world, self._beat)
         self._set_alarm()
         world.warm_up(self._progress)

@@ -19,6 +19,7 @@ from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.base import WarmUpProgress
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
+from automotive_cosim.traffic.network import known_network
 from automotive_cosim.traffic.options import SCRATCH, Setup
 from automotive_cosim.traffic.processor_time import processor_s
 
@@ -111,7 +112,8 @@ class RemoteProcess:
         process._end = weakref.finalize(process, _end, process._channel, popen)
         try:
             with tempfile.TemporaryDirectory(prefix=SCRATCH, ignore_cleanup_errors=True) as scratch:
-                network = process.call("load", setup, Path(scratch), progress=progress, timeout_s=LOADING_LIMIT_S)
+                words = (setup, Path(scratch), known_network(setup.scenario.config))
+                network = process.call("load", *words, progress=progress, timeout_s=LOADING_LIMIT_S)
         except TrafficError as error:
             process.close()
             raise TrafficError(f"{error}; it was loading or warming up {setup.scenario.config}") from None

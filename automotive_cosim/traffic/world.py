@@ -24,7 +24,7 @@ from automotive_cosim.traffic.ego import FASTEST_MPS, FOR_GOOD_S, Driver
 from automotive_cosim.traffic.incidents import Incidents
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
-from automotive_cosim.traffic.network import Network, NetworkReader
+from automotive_cosim.traffic.network import KnownNetwork, Network, NetworkReader
 from automotive_cosim.traffic.options import (
     Setup,
     command_line,
@@ -79,11 +79,12 @@ PROGRESS_PERIOD_S = 5.0
 class World:
     """SUMO with one scenario's traffic. ``depart`` may be called once."""
 
-    def __init__(self, setup: Setup, scratch: Path) -> None:
+    def __init__(self, setup: Setup, scratch: Path, known: KnownNetwork | None = None) -> None:
         """Loads the scenario.
 
         Args:
             scratch: an empty folder, which is not needed afterwards.
+            known: its network, if it has been read.
 
         Raises:
             ScenarioError: SUMO cannot run its files, or the network has no projection.
@@ -91,7 +92,7 @@ class World:
         """
         scenario = setup.scenario
         configuration = read_configuration(scenario.config)
-        reader = NetworkReader(configuration.net)
+        reader = NetworkReader(configuration.net, known)
         self._configuration = copied(configuration, scratch, reader)
         self._scenario = scenario
         self.step_s = scenario.sumo.step_length_s

@@ -252,6 +252,7 @@ KEPT_IN = {
     "studies/equilibrium/gap.py": "what SUMO wrote in a scratch folder",
     "studies/congestion/outputs.py": "the same",
     "traffic/channel.py": "what a process of this package sends",
+    "traffic/network.py": "the same",
 }
 """Where such a call stands, and why it may."""
 

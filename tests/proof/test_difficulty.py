@@ -9,9 +9,9 @@ import pytest
 from automotive_cosim.proof import difficulty
 from automotive_cosim.proof.difficulty import agreement, core, correlation, fit, measured, merged, outcomes_of
 from automotive_cosim.run import difficulty as record
+from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.difficulty import Difficulty, Outcomes, WonBy
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.plan import choose
 from automotive_cosim.run.row import as_json
 from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.sets import Suite

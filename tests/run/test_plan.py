@@ -6,9 +6,10 @@ import pytest
 from automotive_cosim import scenarios
 from automotive_cosim.contracts.given import Clock, See
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.hidden import commitment, drawn, read_key
-from automotive_cosim.run.plan import choose, make_plan, read_plan
+from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.run.trial import Limits
 from automotive_cosim.tasking.sets import Split, Suite
 from automotive_cosim.tasking.split import split_of

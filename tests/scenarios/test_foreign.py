@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 import shutil
 from contextlib import closing
@@ -22,6 +23,7 @@ from automotive_cosim.scenarios.variant import new_folder, write_variant
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.network import known_network, read_network
 from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 from automotive_cosim.traffic.ways import way_through
 
@@ -148,6 +150,28 @@ def test_a_bare_network_runs_with_light_traffic_and_says_so(name: str) -> None:
     _, vehicles, end = _drive(scenario)
     assert vehicles > 3
     assert end is None
+
+
+@pytest.mark.sumo
+def test_a_bare_network_is_read_once_and_drives_as_if_read_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    net = tmp_path / "town.net.xml"
+    shutil.copy(GRID / "grid.net.xml", net)
+    scenario = open_scenario(net)
+    known = known_network(scenario.config)
+    assert known is not None
+    assert pickle.loads(known.pickled) == read_network(net)
+    states = []
+    for _ in range(2):
+        with (
+            closing(Forked(scenario, seed=1)) as simulation,
+            closing(simulation.depart(EgoPlan(scenario.ego.trips[0]))) as traffic,
+        ):
+            traffic.advance(60.0)
+            states.append((traffic.network, traffic.state))
+        monkeypatch.setattr("automotive_cosim.traffic.remote.known_network", lambda config: None)
+    assert states[0] == states[1]
 
 
 def test_light_traffic_is_the_seeds(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from automotive_cosim.formats import bounds, files
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.traffic import sumo_programs, vocabulary
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.file_check import copy_vetted
+from automotive_cosim.traffic.file_check import copy_vetted, vet
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.options import INPUTS, Setup, command_line, copied, read_configuration, run_options
 
@@ -318,6 +318,49 @@ def test_the_cockpits_car_finds_its_name_free(tmp_path: Path) -> None:
     assert "--device.rerouting.explicit=a,ego.scenario" in told
     assert '<flow id="ego"' in told
     assert '<vType id="ego"' in told
+
+
+PLAIN = '<net><location projParameter="!"/><edge id="a"/></net>'
+
+
+class _Counted:
+    """Counts the elements that are read."""
+
+    count = 0
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        self.count += 1
+
+    def end(self, name: str) -> None: ...
+
+
+def test_a_file_that_was_checked_is_copied_unread_while_it_is_the_same(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(PLAIN)
+    known, read = vet(tmp_path / "a.xml"), _Counted()
+    packed = tmp_path / "b.xml.gz"
+    packed.write_bytes(gzip.compress(PLAIN.encode()))
+    for file in (tmp_path / "a.xml", packed):
+        copy = tmp_path / copy_vetted(file, tmp_path, "copy", read, known=known)
+        assert (copy.read_text(), read.count) == (PLAIN, 0)
+        copy.unlink()
+    (tmp_path / "a.xml").write_text(
+        PLAIN.replace("</net>", WRITING_ELEMENTS[0].replace("@", "evil.xml") + "</net>")
+    )
+    copy = tmp_path / copy_vetted(tmp_path / "a.xml", tmp_path, "copy", read, known=known)
+    assert "evil" not in copy.read_text()
+    assert read.count > 3
+    with pytest.raises(ScenarioError, match="missing"):
+        copy_vetted(tmp_path / "none.xml", tmp_path, "copy", read, known=known)
+
+
+@pytest.mark.parametrize(
+    "element", [*WRITING_ELEMENTS, _light("NEMA"), NESTED_LIGHT, '<include href="a.net.xml"/>']
+)
+def test_a_file_that_is_not_copied_as_it_is_has_to_be_read_again(element: str, tmp_path: Path) -> None:
+    (tmp_path / "a.net.xml").write_text(PLAIN)
+    (tmp_path / "b.xml").write_text(PLAIN.replace("</net>", element.replace("@", "evil.xml") + "</net>"))
+    assert vet(tmp_path / "a.net.xml")
+    assert not vet(tmp_path / "b.xml")
 
 
 @pytest.mark.parametrize("encoding", ["iso-8859-1", "latin1", "windows-1252", "utf-8", "utf-16"])
