@@ -18,6 +18,7 @@ from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.derived import number_in
 from automotive_cosim.cli.terminal import escaped, print_alone
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.tasking.sets import Suite
 
 P = ParamSpec("P")
 
@@ -51,9 +52,7 @@ TASKS_HELP = (
     "Ids, patterns, tags, modules, dimensions, subsets, abilities, core, general, safety, all; separated by commas."
 )
 TaskNames = Annotated[str, typer.Option("--tasks", help=TASKS_HELP)]
-SUITE_HELP = (
-    "Task suite: standard, hard, limits, clarify, speed, voice or all. An id selects a task in any, and core sixty."
-)
+SUITE_HELP = f"Task suite: {', '.join(Suite)}, live or all. An id selects a task in any, and core sixty."
 SuiteName = Annotated[str, typer.Option("--suite", help=SUITE_HELP)]
 """For every command that chooses tasks by words."""
 

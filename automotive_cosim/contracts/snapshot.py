@@ -42,6 +42,8 @@ class RoadShapes:
     """Outlines, network coordinates."""
     ground: tuple[GroundArea, ...] = ()
     """Water, green and buildings around the roads."""
+    crossings: tuple[LaneShape, ...] = ()
+    """Where people cross, each along their way; empty in a recording."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,6 +51,7 @@ from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.choosing import choose
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.service import EpisodeService, EpisodeTurn
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 
 INSTRUCTIONS = f"""\
@@ -192,7 +193,7 @@ class CockpitTools:
         ] = "all",
         suite: Annotated[
             str,
-            Field(description="standard, hard, limits, clarify, speed, voice or all; an id names its task in any."),
+            Field(description=f"{', '.join(Suite)}, live or all; an id names its task in any."),
         ] = "standard",
     ) -> CallToolResult:
         """List the tasks that `start` takes, with their halves."""

@@ -304,7 +304,7 @@ class Condition:
         """A value from a word, or from a number. Raises UserError: it has no such value."""
         kind, *annotations = get_args(self.kind)
         if self.name == "make" and isinstance(given, str):
-            from automotive_cosim.cockpit.tree import resolved  # the whole cockpit, for a file of one's own
+            from automotive_cosim.cockpit.own_make import resolved  # the whole cockpit, for a file of one's own
 
             given = resolved(given)
         if self.choices:

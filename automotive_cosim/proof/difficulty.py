@@ -332,9 +332,7 @@ def main() -> None:
     parser.add_argument("folders", type=Path, nargs="*", help="result folders of `automotive-cosim eval`")
     parser.add_argument("--name", default="", help="call all contestants of the folders so, as one")
     parser.add_argument("--play", default="", help="tasks for the built-in contestants, as for `tasks validate`")
-    parser.add_argument(
-        "--suite", default=str(Suite.STANDARD), help="standard, hard, limits, clarify, speed, voice or all"
-    )
+    parser.add_argument("--suite", default=str(Suite.STANDARD), help=f"{', '.join(Suite)}, live or all")
     parser.add_argument("--out", type=Path, default=RECORD, help="the record, by default the shipped one")
     given = parser.parse_args()
     record: OutcomesByHalf = {name: each.outcomes for name, each in read(given.out).halves.items()}

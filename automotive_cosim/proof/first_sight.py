@@ -128,7 +128,6 @@ _IN_UNITS = ("home.speed", "status.speed", "home.sign", "status.limit_sign", "ho
 _MAP = frozenset({Facet.VIEW, Facet.PLACE})
 """Elements without a name: the streets on the map."""
 _LINES: Mapping[str, frozenset[Facet]] = {
-    "place": frozenset({Facet.PLACE}),
     "gps": frozenset({Facet.PLACE, Facet.VIEW}),
     "road": frozenset({Facet.ROAD, Facet.SIGN, Facet.VIEW, Facet.PLACE}),
     "motion": frozenset({Facet.SPEED, Facet.VIEW, Facet.PLACE}),
@@ -281,6 +280,11 @@ def _in_context(context: GeoContext) -> Iterator[Fact]:
     counts: dict[str, int] = {}
     for line in context.lines:
         counts[line.source] = counts.get(line.source, 0) + 1
+        if line.source == "place":  # how near a border is depends on where on the road
+            named, _, border = line.text.partition("; within")
+            yield f"line of place {counts['place']}", (frozenset({Facet.PLACE}), named)
+            yield f"border of place {counts['place']}", (_MAP, border)
+            continue
         causes = _LINES[line.source] if line.source in _LINES else _of(rules[line.source])
         yield f"line of {line.source} {counts[line.source]}", (causes, line.text)
     for line in context.shown:

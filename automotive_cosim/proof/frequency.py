@@ -147,7 +147,7 @@ def main() -> None:
     """Measures, and says what is not reached."""
     parser = argparse.ArgumentParser(description="Measure how often the situation of each half comes about.")
     parser.add_argument("--tasks", default="all", help="as for `automotive-cosim tasks validate`")
-    parser.add_argument("--suite", default="standard", help="standard, hard, limits, clarify, speed, voice or all")
+    parser.add_argument("--suite", default="standard", help=f"{', '.join(Suite)}, live or all")
     parser.add_argument("--first-seed", type=int, default=100)
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--out", type=Path, default=RECORD, help="the record, by default the shipped one")

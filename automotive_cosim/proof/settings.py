@@ -43,7 +43,8 @@ class ProofSettings:
     """Ids, patterns, tags, modules, dimensions, subsets, abilities, core, general, safety, all; separated by
     commas."""
     suite: str = str(Suite.STANDARD)
-    """Suite: standard, hard, limits, clarify, speed, voice or all. An id selects a task in any, and core sixty."""
+    """Suite: standard, hard, limits, clarify, speed, voice, camera, people, live or all. An id selects a task in
+    any, and core sixty."""
     part: Annotated[PartOf | None, Option(form="K/N", read=PartOf.read)] = None
     """Prove only part K of N, as in 3/10; together, the parts are all tasks."""
     seeds: tuple[int, ...] = (0, 1, 2)

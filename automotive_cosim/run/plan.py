@@ -14,7 +14,7 @@ from annotated_types import Ge, Le
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, Agent, AgentSettings, is_remote, make_agent
-from automotive_cosim.cockpit import tree
+from automotive_cosim.cockpit import own_make
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Clock, Hearing, See
@@ -350,7 +350,7 @@ def with_files(values: dict[str, Any]) -> dict[str, Any]:
 
     Raises UserError: such a file cannot be used."""
     named = {}
-    for name, read in (("prompt", resolved), ("make", tree.resolved)):
+    for name, read in (("prompt", resolved), ("make", own_make.resolved)):
         if isinstance(given := values.get(name), list):
             named[name] = [read(each) if isinstance(each, str) else each for each in given]
     return values | named

@@ -7,7 +7,8 @@ ends at once: reading the position of each vehicle in a town takes several times
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
 
 from automotive_cosim.contracts import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle
 from automotive_cosim.traffic.records import make_seen
@@ -18,6 +19,9 @@ LOOK_RADIUS_M = 800.0
 
 KINDS = (("bus", {"bus", "coach", "taxi"}), ("bicycle", {"bicycle"}), ("foot", {"pedestrian"}))
 """What a lane is that is closed to cars, by a vehicle class that may use it; any other is for rails."""
+
+CROSSING = re.compile(r":.+_c\d+")
+"""How netconvert names the edge of a pedestrian crossing."""
 
 Size = tuple[str, float, float]
 """Vehicle class, length and width."""
@@ -71,18 +75,25 @@ class Lookout:
 
 def read_shapes(sumo: LibSumo) -> RoadShapes:
     """The whole network as a picture shows it: 20 ms for three thousand lanes."""
-    links = _links(sumo)
-    lane = sumo.lane
-    lanes = tuple(
-        LaneShape(
-            each, _kind(lane.getAllowed(each)), lane.getWidth(each), _line(lane.getShape(each)), links.get(each, ())
+    links, lane, every = _links(sumo), sumo.lane, sumo.lane.getIDList()
+
+    def shaped(lanes: Iterable[str]) -> tuple[LaneShape, ...]:
+        return tuple(
+            LaneShape(
+                each,
+                _kind(lane.getAllowed(each)),
+                lane.getWidth(each),
+                _line(lane.getShape(each)),
+                links.get(each, ()),
+            )
+            for each in lanes
         )
-        for each in lane.getIDList()
-        if not each.startswith(":")
-    )
+
+    lanes = shaped(each for each in every if not each.startswith(":"))
+    crossings = shaped(each for each in every if CROSSING.fullmatch(each.rpartition("_")[0]))
     shape, ids = sumo.junction.getShape, sumo.junction.getIDList()
     outlines = (_line(shape(each)) for each in ids if not each.startswith(":"))
-    return RoadShapes(lanes, tuple(outline for outline in outlines if len(outline) > 2))
+    return RoadShapes(lanes, tuple(outline for outline in outlines if len(outline) > 2), crossings=crossings)
 
 
 def _links(sumo: LibSumo) -> dict[str, tuple[tuple[str, int], ...]]:

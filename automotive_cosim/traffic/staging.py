@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -14,6 +13,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.congestion import JAM_BELOW
+from automotive_cosim.traffic.lookout import CROSSING
 from automotive_cosim.traffic.manoeuvres import (
     StagedBraking,
     StagedCutIn,
@@ -47,9 +47,6 @@ SIGN_WAY_M = 600.0
 
 TRACTOR_WAY_M = 1000.0
 """How far a tractor drives that was staged ahead of the ego."""
-
-_CROSSING = re.compile(r":.+_c\d+")
-"""Netconvert's ids of pedestrian crossings."""
 
 
 class _Breakdown(StagedIncident):
@@ -339,7 +336,7 @@ class _Pedestrians(StagedIncident):
             self._walk = stage.sumo.simulation.findIntermodalRoute(incident.from_edge, incident.to_edge)
         except stage.sumo.refusals as error:
             raise ScenarioError(f"[[incidents]]: pedestrians: {error}") from error
-        if not self._walk or not any(_CROSSING.fullmatch(edge) for edge in stage.sumo.edge_ids()):
+        if not self._walk or not any(CROSSING.fullmatch(edge) for edge in stage.sumo.edge_ids()):
             raise ScenarioError(
                 f"[[incidents]]: pedestrians cannot walk from {incident.from_edge!r} to {incident.to_edge!r}; the "
                 "network requires sidewalks and crossings (netconvert --sidewalks.guess --crossings.guess)"

@@ -667,7 +667,10 @@ class EgoRoad:
             return None, ()
         end: EgoEnd | None = None
         events: list[Event] = []
-        for collision in sumo.collisions():
+        new = sumo.colliding() if sumo.colliding_count() else ()
+        for collision in sumo.collisions():  # those that go on too, where nobody is taken off the road
+            if collision.collider not in new:
+                continue
             text = f"{collision.collider} hits {collision.victim}"
             events.append(Event(sumo.time(), "collision", text))
             if self._car in (collision.collider, collision.victim):

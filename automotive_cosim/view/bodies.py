@@ -213,7 +213,7 @@ def _lamps(vehicle: SeenVehicle, place: _placed, lens: Lens, form: _Form, *, dar
     long, wide, signals = vehicle.length_m, vehicle.width_m / 2, vehicle.signals
     is_rear = _faces_lens((place(0, -wide, 0), place(0, -wide, 1), place(0, wide, 1)), lens)
     end = -0.02 if is_rear else long + 0.02
-    low = 0.66 if form is _CAR else 0.8
+    low, sill = 0.66 if form is _CAR else 0.8, form.profile[0][1]
     is_front = _faces_lens((place(long, wide, 0), place(long, wide, 1), place(long, -wide, 1)), lens)
 
     def lamp(inner: float, outer: float, bottom: float, top: float, colour: Colour, *, shines: bool) -> Face:
@@ -222,7 +222,7 @@ def _lamps(vehicle: SeenVehicle, place: _placed, lens: Lens, form: _Form, *, dar
 
     if is_rear or is_front:
         for side in (-1, 1):
-            yield lamp(side * 0.66, side * 0.96, 0.0, 0.34, TYRE, shines=False)
+            yield lamp(side * 0.66, side * 0.96, 0.0, sill + 0.04, TYRE, shines=False)
         if is_rear:
             brakes = bool(signals & SumoSignal.BRAKE)
             for side in (-1, 1):
@@ -230,12 +230,12 @@ def _lamps(vehicle: SeenVehicle, place: _placed, lens: Lens, form: _Form, *, dar
                 yield lamp(side * 0.62, side * 0.96, low, low + 0.22, colour, shines=brakes or dark)
             if brakes and form is _CAR:
                 yield lamp(-0.16, 0.16, 0.94, 1.0, RED_ON, shines=True)
-            yield lamp(-0.28, 0.28, 0.46, 0.58, (206, 206, 196), shines=False)
+            yield lamp(-0.28, 0.28, sill + 0.16, sill + 0.28, (206, 206, 196), shines=False)
         else:
             for side in (-1, 1):
                 colour = WHITE if dark else (196, 200, 204)
                 yield lamp(side * 0.58, side * 0.9, low - 0.06, low + 0.12, colour, shines=dark)
-            yield lamp(-0.3, 0.3, 0.4, 0.52, (206, 206, 196), shines=False)
+            yield lamp(-0.3, 0.3, sill + 0.1, sill + 0.22, (206, 206, 196), shines=False)
         for side, bit in ((-1, SumoSignal.LEFT), (1, SumoSignal.RIGHT)):
             if signals & (bit | SumoSignal.HAZARD):
                 top = low + (0.36 if is_rear else 0.3)

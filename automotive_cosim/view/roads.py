@@ -18,6 +18,8 @@ from automotive_cosim.view.lens import XY, Corners
 XYs = tuple[XY, ...]
 LINE_M, KERB_M, STOP_LINE_M, RAIL_M = 0.14, 0.16, 0.4, 0.72
 """Width of a marking, of a kerb and of a stop line, and from the middle of a track to a rail."""
+ZEBRA_M = (0.5, 1.0)
+"""Width of a stripe, and from one to the next (Germany, R-FGÜ 2001; others are like it)."""
 MOTORWAYS = ("motorway", "trunk")
 SEAM_M = 0.06
 """How far areas beside each other overlap."""
@@ -193,6 +195,8 @@ class StreetMap:
         self._outlines = [np.array(outline, dtype=np.float64) for outline in shapes.junctions]
         self._crossings = STRtree(self._junctions)
         self._ground = [(area, np.array(area.outline_m, dtype=np.float64)) for area in shapes.ground]
+        self._zebras = [[*painted(each.line_m, ZEBRA_M, each.width_m)] for each in shapes.crossings]
+        self._stripes = STRtree([LineString(each.line_m) for each in shapes.crossings])
         self._areas = STRtree([MultiPoint(area.outline_m).envelope for area in shapes.ground])
 
     def streets(self, x_m: float, y_m: float, radius_m: float) -> list[EdgeView]:
@@ -200,7 +204,7 @@ class StreetMap:
         return [self.street(self._edges[at]) for at in self._near(self._tree, x_m, y_m, radius_m)]
 
     def ground(self, x_m: float, y_m: float, radius_m: float) -> Areas:
-        """Green, water and the junctions within a distance."""
+        """Green, water, and the junctions and zebra crossings within a distance."""
         near = [self._ground[at] for at in self._near(self._areas, x_m, y_m, radius_m)]
         flat: list[tuple[int, Corners]] = [
             (Paving.GREEN if area.kind is GroundKind.GREEN else Paving.WATER, outline)
@@ -208,7 +212,9 @@ class StreetMap:
             if area.kind is not GroundKind.BUILDING
         ]
         crossings = self._near(self._crossings, x_m, y_m, radius_m)
-        return Areas.of([*flat, *((Paving.CROSSING, self._outlines[at]) for at in crossings)])
+        flat += ((Paving.CROSSING, self._outlines[at]) for at in crossings)
+        zebras = self._near(self._stripes, x_m, y_m, radius_m)
+        return Areas.of([*flat, *((Paving.WHITE, stripe) for at in zebras for stripe in self._zebras[at])])
 
     def buildings(self, x_m: float, y_m: float, radius_m: float) -> list[Corners]:
         """Outlines of the buildings within a distance."""

@@ -111,7 +111,7 @@ class Scene:
     tunnels: tuple[EdgeView, ...]
     """Those of the streets that have walls and a roof."""
     ground: Areas
-    """Green, water and junctions."""
+    """Green, water, junctions and zebra crossings."""
     buildings: tuple[Corners, ...]
     """Their outlines."""
     vehicles: tuple[SeenVehicle, ...]

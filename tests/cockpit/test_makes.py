@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit import tree
+from automotive_cosim.cockpit import own_make, tree
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.make import HOME, BarOfMake, Make, OwnScreen, Shelf
@@ -36,7 +36,7 @@ def test_every_file_of_the_folder_is_a_make_and_each_is_drawn() -> None:
 
 @over(MAKES)
 def test_what_a_make_names_is_there(name: CarMake) -> None:
-    tree.check(parse(FOLDER.joinpath(f"{name}.toml").read_text("utf-8"), Path(f"{name}.toml")))
+    own_make.check(parse(FOLDER.joinpath(f"{name}.toml").read_text("utf-8"), Path(f"{name}.toml")))
 
 
 @over(MAKES)
@@ -94,14 +94,27 @@ WRONG = {
     BAR + menu("vehicle", '"A b"') + menu('"A b"', "seats"): "is no name of a screen",
     BAR + menu("vehicle", "seats", "seats"): "names seats twice",
     BAR + shelves("vehicle", '["hvac.front_defroster", "a", "b"]'): "in every language",
+    BAR + shelves("vehicle", '["hvac.fan"]', '["hvac.front_defogger"]'): "line 5 [screens.vehicle]: "
+    "shelves[0].controls[1][0] no control named 'hvac.front_defogger': did you mean 'hvac.front_defroster'?",
+    BAR + shelves("vehicle", '["door.all"]'): "no control named 'door.all'",
 }
 
 
 @over(WRONG.items())
 def test_what_is_wrong_in_a_file_is_told_with_its_line(text: str, told: str) -> None:
     with pytest.raises(UserError, match=r"own\.toml") as refused:
-        tree.check(parse(text, Path("own.toml")))
+        own_make.check(parse(text, Path("own.toml")))
     assert told in str(refused.value)
+
+
+def test_a_shelf_may_have_what_only_another_part_or_a_moving_car_shows() -> None:
+    for of, key in (
+        ("doors", "door.driving"),
+        ("seats", "seat.passenger.massage"),
+        ("outside", "outside.act.hazard"),
+    ):
+        text = BAR + shelves("vehicle", f'["{key}"]').replace('"climate"', f'"{of}"')
+        own_make.check(parse(text, Path("own.toml")))
 
 
 def test_a_shelf_shows_what_there_is_of_any_part_of_any_screen(network: RoadNetwork) -> None:
@@ -126,11 +139,11 @@ def test_a_shelf_shows_what_there_is_of_any_part_of_any_screen(network: RoadNetw
 def test_a_make_of_ones_own_is_named_by_its_content_and_must_not_change(tmp_path: Path) -> None:
     file = tmp_path / "own.toml"
     file.write_text(BAR, encoding="utf-8")
-    name = CarMake(tree.resolved(str(file)))
+    name = CarMake(own_make.resolved(str(file)))
     assert tree.make_named(name).bar.entries == ("home", "apps")
     file.write_text(BAR + "mirrored = true", encoding="utf-8")
-    assert tree.resolved(str(file)) != name
+    assert own_make.resolved(str(file)) != name
     tree.make_named.cache_clear()
     with pytest.raises(UserError, match="has changed since the run began"):
         tree.make_named(name)
-    assert tree.resolved("cedar") == "cedar"
+    assert own_make.resolved("cedar") == "cedar"

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.cockpit import tree
+from automotive_cosim.cockpit import own_make
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import CarMake, Interface
@@ -422,7 +422,7 @@ def test_what_clients_write_as_text_or_null_is_taken(service: EpisodeService) ->
 
 def test_nobody_names_files_of_this_machine_through_a_door(tmp_path):
     (tmp_path / "own.toml").write_text('bar = { entries = ["home", "apps"] }', encoding="utf-8")
-    named = tree.resolved(str(tmp_path / "own.toml"))
+    named = own_make.resolved(str(tmp_path / "own.toml"))
     for given in ({"make": str(tmp_path / "own.toml")}, {"make": named}, {"prompt": f"mine.md@{named[-64:]}"}):
         with pytest.raises(UserError, match="choose from"):
             conditions_of(given)

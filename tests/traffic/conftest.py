@@ -49,10 +49,11 @@ def variant(grid: Scenario, tmp_path: Path) -> Callable[[Edit], Scenario]:
 
 @pytest.fixture(scope="session")
 def walkable(sumo: None) -> Edit:
-    def build(folder: Path) -> None:
-        """Gives the grid sidewalks, and zebra crossings over the avenue in its middle."""
+    def build(folder: Path, *, first: bool = True) -> None:
+        """Gives the grid sidewalks, and zebra crossings over the avenue in its middle, on which people go first."""
         zebras = "".join(
-            f'<crossing node="c2" edges="{arm}" priority="true"/>' for arm in ("c1c2 c2c1", "c2c3 c3c2")
+            f'<crossing node="c2" edges="{arm}" priority="{str(first).lower()}"/>'
+            for arm in ("c1c2 c2c1", "c2c3 c3c2")
         )
         (folder / "zebra.con.xml").write_text(f"<connections>{zebras}</connections>")
         plain = (

@@ -18,7 +18,9 @@ from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.staging import STAGED
+from automotive_cosim.view.scene import Sights
 from tests.traffic.in_process import InProcess, InProcessTraffic
+from tests.view.test_view import DAY, LIT, nearest, read_back, slack_m
 
 Edit = Callable[[Path], None]
 Variant = Callable[[Edit], Scenario]
@@ -525,6 +527,33 @@ def test_people_cross_and_the_ego_lets_them(
     assert any(edge.startswith(":c2_c") for edge in crossings)
     assert waits > 1, "the ego waits before the crossing"
     assert traffic.state.end is EgoEnd.ARRIVED
+
+
+def test_who_waits_at_the_kerb_is_seen_there(
+    variant: Variant, walkable: Edit, average: EgoPlan, in_sumo: InSumo
+) -> None:
+    """SUMO lets people without priority wait until the ego has passed."""
+
+    def crossed(folder: Path) -> None:
+        walkable(folder, first=False)
+        (folder / "grid.rou.xml").write_text("<routes/>")
+        path = folder / "scenario.toml"
+        people = 'kind = "pedestrians"\nfrom_edge = "n2c2"\nto_edge = "c2s2"\nevery_s = 5.0\ngroup = 1'
+        path.write_text(path.read_text() + f"\n[[incidents]]\n{people}\nfrom_s = -30.0\nto_s = 90.0\n")
+
+    traffic = in_sumo(variant(crossed), average)
+    shapes = traffic.shapes()
+    assert len(shapes.crossings) == 2
+    sights, read = Sights(shapes, traffic.network), 0
+    while traffic.advance(1.0).states and traffic.state.end is None:
+        scene = sights.scene(traffic.look(), traffic.state, DAY, LIT)
+        first = min(scene.people, key=lambda each: nearest(scene, each)[1], default=None)
+        if first is None or first.speed_mps > 0.1 or not 20.0 < nearest(scene, first)[1] < 70.0:
+            continue
+        (right_m, ahead_m), told = nearest(scene, first), read_back(scene, first)
+        assert told == (pytest.approx(right_m, abs=0.9), pytest.approx(ahead_m, abs=slack_m(scene, ahead_m)))
+        read += 1
+    assert read > 2
 
 
 def test_every_kind_of_incident_is_staged() -> None:

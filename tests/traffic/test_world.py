@@ -226,21 +226,56 @@ def test_a_collision_takes_the_ego_off_the_road_whatever_it_does_to_others(
 ) -> None:
     import libsumo
 
-    def stated(folder: Path) -> None:
-        path = folder / "grid.sumocfg"
-        path.write_text(
-            path.read_text().replace("<processing>", f'<processing><collision.action value="{action}"/>')
-        )
-
-    scenario = open_scenario(variant(stated).config)
-    assert scenario.as_stated
-    simulation = InProcess(replace(scenario, sumo=replace(scenario.sumo, warm_up_s=10.0)), seed=1)
+    simulation = _stated(variant, action)
     try:
         assert _collided(simulation, hurried).states[-1].end is EgoEnd.COLLIDED
         assert simulation.world is not None
         for _ in range(200):
             simulation.world.step()
         assert "ego" not in libsumo.vehicle.getIDList()
+    finally:
+        simulation.close()
+
+
+def _stated(variant: Variant, action: str) -> InProcess:
+    """The grid with SUMO's own action on collisions."""
+
+    def edit(folder: Path) -> None:
+        path = folder / "grid.sumocfg"
+        path.write_text(
+            path.read_text().replace("<processing>", f'<processing><collision.action value="{action}"/>')
+        )
+
+    scenario = open_scenario(variant(edit).config)
+    assert scenario.as_stated
+    return InProcess(replace(scenario, sumo=replace(scenario.sumo, warm_up_s=10.0)), seed=1)
+
+
+def test_a_collision_that_lasts_is_told_once(variant: Variant, hurried: EgoPlan) -> None:
+    import libsumo
+
+    simulation = _stated(variant, "warn")
+    try:
+        traffic = simulation.depart(hurried)
+        traffic.advance(1.0)
+        lane, position_m = traffic.state.road.lane_id, traffic.state.road.lane_position_m
+        for name, ahead_m in (("wall", 200.0), ("hitter", 150.0)):
+            libsumo.vehicle.add(
+                name, "automotive_cosim.ego", departLane=lane[-1], departPos=str(position_m + ahead_m)
+            )
+            libsumo.vehicle.setLaneChangeMode(name, 0)
+            libsumo.vehicle.setSpeedMode(name, 0)
+            libsumo.vehicle.setSpeed(name, 0.0)
+        libsumo.vehicle.setSpeed("ego", 0.0)
+        libsumo.vehicle.setSpeed("hitter", 10.0)
+        events = traffic.advance(6.0).events
+        libsumo.vehicle.setSpeed("hitter", 0.0)
+        libsumo.route.add("short", ["c1c2"])
+        libsumo.vehicle.add("passer", "short", departPos="last", departSpeed="max")
+        events += traffic.advance(6.0).events
+        assert "passer" not in libsumo.vehicle.getIDList()
+        assert len(libsumo.simulation.getCollisions()) == 1, "it goes on"
+        assert [event.text for event in events if event.kind == "collision"] == ["hitter hits wall"]
     finally:
         simulation.close()
 

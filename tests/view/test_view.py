@@ -326,6 +326,24 @@ def test_what_is_closed_has_barriers_and_cones_on_it() -> None:
     assert (Board.CLOSED, "") in boards(made(closed=("b_0", "b_1")))
 
 
+def test_a_zebra_is_where_people_cross() -> None:
+    line = LaneShape(":a_c0_0", "foot", 4.0, ((8.0, 280.0), (-8.0, 280.0)))
+    bare, striped = (
+        Sights(replace(SHAPES, crossings=crossings), PLAIN).scene(
+            RoadSnapshot(9.0, (), ()), driving(260.0), DAY, LIT
+        )
+        for crossings in ((), (line,))
+    )
+    change = np.abs(paint.picture(striped).astype(int) - paint.picture(bare)).max(axis=2) > 60
+    places = [striped.lens.on_road(across + 0.5, down + 0.5) for down, across in np.argwhere(change)]
+    assert min(x for x, _ in places) == pytest.approx(-8.0, abs=0.7)
+    assert max(x for x, _ in places) == pytest.approx(8.0, abs=0.7)
+    assert min(y for _, y in places) == pytest.approx(278.0, abs=0.8)
+    assert max(y for _, y in places) == pytest.approx(282.0, abs=0.8)
+    middle = change[striped.lens.pixel(striped.lens.sees(0.0, 280.0))[1]]
+    assert np.count_nonzero(np.diff(middle.astype(int)) > 0) in range(14, 18), "a stripe each metre"
+
+
 # --- light and air ------------------------------------------------------------------------------------------
 
 
