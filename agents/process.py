@@ -1,9 +1,9 @@
 """The processes in which an evaluation's agents live: ``python -m automotive_cosim.agents.process DESCRIPTOR``.
 
 One process per worker, the *fork server*, imports this package and nothing of an agent's, and knows nothing of any
-episode. For each episode, and for each car of a fleet, it forks a process, which makes one agent, is told what the
-driver says and what there is to see, and answers with actions. ``run.fork_server`` and ``run.outside`` are the other
-side.
+episode. For each episode, and each car of a fleet, it forks a process, which makes one agent, is told what the
+driver says and what there is to see, and answers with actions. ``run.fork_server`` and ``run.outside`` are the
+other side.
 
     worker ------------ fork server                 ("start", request), ("end", pid, grace)   pickled
       |                    | forks
@@ -149,16 +149,12 @@ class _AgentServer:
 
     def _left_by(self, agent: int) -> list[int]:
         """The children of this process that are of an agent that ends: it, its orphans, and theirs."""
-        found = children() or [agent]
-        return [pid for pid in found if pid == agent or (pid not in self._folders and self._is_alone_or_of(agent, pid))]
-
-    def _is_alone_or_of(self, agent: int, pid: int) -> bool:
-        if not self._folders:
-            return True
-        try:
-            return os.getsid(pid) == agent
-        except ProcessLookupError:
-            return False
+        others = self._folders
+        return [
+            pid
+            for pid in children() or [agent]
+            if pid == agent or (pid not in others and (not others or _session(pid) == agent))
+        ]
 
 
 def live(wire: Wire, request: AgentRequest) -> NoReturn:
@@ -210,6 +206,14 @@ def _message(message: ChatMessage) -> Json:
         told["calls"] = [asdict(call) for call in message.calls]
     told |= {"call_id": message.call_id} if message.call_id else {}
     return told | ({} if message.form is None else {"form": message.form})
+
+
+def _session(pid: int) -> int | None:
+    """The session of a process; None once it has ended."""
+    try:
+        return os.getsid(pid)
+    except ProcessLookupError:
+        return None
 
 
 def _told(error: BaseException) -> str:

@@ -2,7 +2,7 @@
 
 ``decoder`` makes one for a type, from the type alone: numbers with limits, members of enumerations, classes as
 tables or lists of their fields, signals and conditions in their written languages (``notation``). What a name, a
-placeholder or a topic stands for is known to the ``Source``, the reader of the task's table.
+placeholder or a topic stands for is known to the ``Meanings``, the reader of the task's table.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ COMPANY = "company"
 """Written for ``aboard``: one to four adults, the driver among them, drawn as the parameter ``occupants``."""
 
 
-class Source(Protocol):
+class Meanings(Protocol):
     """What a decoder asks of whoever reads the table."""
 
     below: list[str]
@@ -61,7 +61,7 @@ class Source(Protocol):
         """One to four adults, drawn."""
 
 
-Decoder: TypeAlias = Callable[[Source, Any], Any]
+Decoder: TypeAlias = Callable[[Meanings, Any], Any]
 _TEXTS = (str, Quoted, Word)
 WITH_COLUMN = re.compile(r"\{([a-z_]\w*)\.(\w+)\}")
 
@@ -93,7 +93,7 @@ def decoder(hint: Any) -> Decoder:
     read = hint if inspect.isfunction(hint) else _reads(hint)
     is_text = hint is str or (get_origin(hint) is Annotated and get_args(hint)[0] is str)
 
-    def decode(source: Source, value: Any) -> Any:
+    def decode(source: Meanings, value: Any) -> Any:
         kind = type(value)
         if kind is hint and kind is not str:
             return value
@@ -148,7 +148,7 @@ def _reads(hint: Any) -> Decoder:
 
 
 def _scalar(kind: type[Any]) -> Decoder:
-    def read(source: Source, value: Any) -> Any:
+    def read(source: Meanings, value: Any) -> Any:
         if type(value) is kind:
             return joined(value) if kind is str else value
         if kind is float and type(value) is int:
@@ -171,7 +171,7 @@ def _limited(kind: Any, limits: Sequence[Any]) -> Decoder:
     if any(getattr(each, "what", "") == "signal" for each in limits):
         return lambda source, value: _key(value)
 
-    def decode(source: Source, value: Any) -> Any:
+    def decode(source: Meanings, value: Any) -> Any:
         found = read(source, value)
         for each in limits:
             for name, (told, holds) in _LIMITS.items():
@@ -194,7 +194,7 @@ _LIMITS: Mapping[str, tuple[str, Callable[[Any, Any], bool]]] = {
 def _either(kinds: Sequence[Any], may_lack: bool) -> Decoder:
     readers = [decoder(kind) for kind in kinds]
 
-    def read(source: Source, value: Any) -> Any:
+    def read(source: Meanings, value: Any) -> Any:
         if may_lack and (value is None or value == "none"):
             return None
         for number, each in enumerate(readers, 1):
@@ -210,7 +210,7 @@ def _either(kinds: Sequence[Any], may_lack: bool) -> Decoder:
 
 
 def _one_of(values: Sequence[Any]) -> Decoder:
-    def read(source: Source, value: Any) -> Any:
+    def read(source: Meanings, value: Any) -> Any:
         if value not in values:
             raise UnknownNameError("value", str(value), map(str, values))
         return str(value) if isinstance(value, str) else value
@@ -221,7 +221,7 @@ def _one_of(values: Sequence[Any]) -> Decoder:
 def _member(kind: type[Enum]) -> Decoder:
     members = {str(member.value): member for member in kind}
 
-    def read(source: Source, value: Any) -> Any:
+    def read(source: Meanings, value: Any) -> Any:
         if value not in members:
             raise UnknownNameError(kind.__name__.lower(), str(value), members)
         return members[value]
@@ -233,7 +233,7 @@ def _listed(inner: Sequence[Any]) -> Decoder:
     if len(inner) != 2 or inner[1] is not Ellipsis:
         items = [decoder(each) for each in inner]
 
-        def read(source: Source, value: Any) -> Any:
+        def read(source: Meanings, value: Any) -> Any:
             found = entries(value)
             if len(found) != len(items):
                 raise UserError(f"has {len(found)} entries; it must have {len(items)}")
@@ -260,7 +260,7 @@ def mapping(value: Any, *, pairs: bool = False) -> Mapping[str, Any]:
     return value
 
 
-def _plain(source: Source, value: Any) -> Any:
+def _plain(source: Meanings, value: Any) -> Any:
     """A value of no particular type."""
     if isinstance(value, Quoted | Word):
         return str(value)
@@ -277,7 +277,7 @@ def _class(kind: type[Any]) -> Decoder:
     }
     needed = notation.needed(kind)
 
-    def read(source: Source, value: Any) -> Any:
+    def read(source: Meanings, value: Any) -> Any:
         value = value if kind.__name__ == "Topic" and isinstance(value, Quoted) else source.named(value)
         if isinstance(value, Quoted):
             return source.topic(value)
@@ -314,17 +314,17 @@ def _key(value: Any) -> str:
     return str(value)
 
 
-def keys(source: Source, value: Any) -> frozenset[str]:
+def keys(source: Meanings, value: Any) -> frozenset[str]:
     """Keys of ``Moment.commands``, from a list of them or its name."""
     return frozenset(map(_key, entries(source.named(value))))
 
 
-def _by_path(source: Source, value: Any) -> Any:
+def _by_path(source: Meanings, value: Any) -> Any:
     """Values of signals: ``HVAC.FAN_SPEED = 100 and HVAC.AUTO = true``."""
     return notation.values_of_signals(value if "=" in value or not value else source.named(value), source.decode)
 
 
-def _cabin(source: Source, value: Any) -> Any:
+def _cabin(source: Meanings, value: Any) -> Any:
     known, made = hints(CabinStart), {}
     for name, each in mapping(source.named(value)).items():
         if name not in known:
@@ -333,7 +333,7 @@ def _cabin(source: Source, value: Any) -> Any:
     return made
 
 
-def _aboard(source: Source, value: Any) -> Any:
+def _aboard(source: Meanings, value: Any) -> Any:
     return source.company() if value == COMPANY else decoder(hints(Start)["aboard"])(source, value)
 
 
@@ -347,7 +347,7 @@ _SPECIAL: dict[tuple[str, str], Decoder] = {
 }
 
 
-def _mapped(source: Source, value: Any, read: Decoder) -> Any:
+def _mapped(source: Meanings, value: Any, read: Decoder) -> Any:
     """Signals that are drawn as a whole, or one by one."""
     if isinstance(value, str) and (found := PLACEHOLDER.fullmatch(value)):
         return source.parameter(found[1], found[2] or "", read)
