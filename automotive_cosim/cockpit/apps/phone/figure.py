@@ -31,13 +31,16 @@ class Sentence:
     """The message with its figure."""
     label: str
     start: float
+    """The value from which plus and minus begin, as long as none is set."""
     fine: float
     """Change per tap of plus or minus."""
     coarse: float
     most: float
 
-    def said(self, value: float) -> Text:
-        """The whole message, with the value in its sentence."""
+    def said(self, value: float | None) -> Text:
+        """The whole message, with the value in its sentence, or a gap for it."""
+        if value is None:
+            return self.text("…")
         if self.label == "Arrival":
             return self.text(f"{int(value) // 60:02d}:{int(value) % 60:02d}")
         return self.text(Quantity(f"{value:.1f}" if self.fine < 1 else f"{value:.0f}"))
@@ -78,7 +81,8 @@ def figure(state: State) -> tuple[Widget, ...]:
         return Put(replace(phone, draft=new), SENTENCES[new.sentence].said(new.value))
 
     def moved(by: float) -> Put:
-        value = round(min(sentence.most, max(0.0, draft.value + by)), 1)
+        now = sentence.start if draft.value is None else draft.value
+        value = round(min(sentence.most, max(0.0, now + by)), 1)
         return put(replace(draft, value=value))
 
     words = sentence.said(draft.value)
@@ -93,7 +97,12 @@ def figure(state: State) -> tuple[Widget, ...]:
         ),
     )
     send = Button(
-        key="figure.send", text=say("Send"), icon=Icon.REPLY, look=Look.ACCENT, on_tap=SendReply(who, words)
+        key="figure.send",
+        text=say("Send"),
+        icon=Icon.REPLY,
+        look=Look.ACCENT,
+        on_tap=SendReply(who, words),
+        disabled=say("Set the figure first") if draft.value is None else "",
     )
     told = Label(key="figure.words", text=words, description=say("Message"), style=Type.TITLE)
     page = stack(
@@ -114,10 +123,10 @@ def figure(state: State) -> tuple[Widget, ...]:
 
 
 def _begun(key: str, state: State) -> FigureDraft:
-    """A sentence with the figure it begins with: for an arrival that of the route, never a time past."""
+    """A sentence without its figure; an arrival has that of the route, never a time past."""
     sentence = SENTENCES[key]
     if key != "arrive" or state.outside is None:
-        return FigureDraft(key, sentence.start)
+        return FigureDraft(key)
     then = state.outside.local_time + timedelta(seconds=state.outside.driving.ahead.eta_s)
     minute = 60 * then.hour + then.minute + then.second / 60
     return FigureDraft(key, math.ceil(minute / sentence.fine) * sentence.fine % DAY_MIN)

@@ -221,7 +221,8 @@ class FigureDraft:
 
     sentence: str
     """Key of its sentence."""
-    value: float
+    value: float | None = None
+    """Its figure; None until it is set."""
 
 
 @dataclass(frozen=True, slots=True)
