@@ -247,7 +247,7 @@ def test_every_actuator_is_set_from_home(make: Make, around: Surroundings, walke
 
 
 def test_no_form_is_ready_before_anybody_filled_it_in(views: Any) -> None:
-    """What is sent or paid for good is written on the button in full, tells what the car knows, or cannot be sent."""
+    """What is sent or paid for good stands on the button in full, tells what the car knows, or cannot be sent."""
     arrive = SENTENCES["arrive"].said(14 * 60 + 20)  # the route's, in steps of five minutes
     ready = set[str]()
     for view in views("parked"):

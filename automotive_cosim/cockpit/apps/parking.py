@@ -21,6 +21,7 @@ from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import Quantity, say
 from automotive_cosim.formats.annotations import OneOf
 
+
 @dataclass(frozen=True, slots=True)
 class Ticket:
     """A paid parking space; payments cannot be undone."""
