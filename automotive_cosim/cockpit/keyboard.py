@@ -77,10 +77,10 @@ def _lowest(field: Field) -> Block:
     space = Button(key="keyboard.space", text=say("Space"), on_tap=Key(field.key, " "))
     enter = Button(
         key="keyboard.enter",
-        description=say("Take the first result"),
+        description=field.enters,
         icon=Icon.CHECK,
         look=Look.ACCENT,
         on_tap=Enter(field.on_enter),
-        disabled="" if field.on_enter else say("No matches yet"),
+        disabled="" if field.on_enter else field.lacking,
     )
     return line((160, hide), GAP, (160, erase), GAP, space, GAP, (260, enter))

@@ -89,14 +89,15 @@ class Dismiss(Message):
 
 @dataclass(frozen=True, slots=True)
 class Focus(Message):
-    """Focus a text field and open the keyboard; empty closes the keyboard."""
+    """Focus a text field and open the keyboard, or the microphone; empty closes the keyboard."""
 
     field: str
+    spoken: bool = False
 
     def perform(self, state: State) -> Feedback:
-        if state.is_typing and state.focus == self.field:
+        if (state.listening if self.spoken else state.is_typing) and state.focus == self.field:
             return UNCHANGED
-        state.focus, state.keyboard = self.field, bool(self.field)
+        state.focus, state.keyboard, state.listening = self.field, bool(self.field) > self.spoken, self.spoken
         return Feedback(FeedbackCode.OK, say("The field takes text") if self.field else FOLDED)
 
 

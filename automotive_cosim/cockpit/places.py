@@ -18,6 +18,9 @@ from automotive_cosim.contracts.text import Quantity, say
 PLACES = 80
 """Number of places, limited by the streets of the network."""
 FAVOURITE_STREETS = 6
+ZONES = (say("Zone A"), say("Zone B"), say("Zone C"))
+PRICES = {"Zone A": 4.0, "Zone B": 2.5, "Zone C": 1.2}
+"""Price of an hour's parking by zone; each car park lies in one, which its details name."""
 
 
 class PlaceKind(StrEnum):
@@ -204,10 +207,12 @@ def _detail(kind: PlaceKind, rng: np.random.Generator) -> str:
             total=plugs,
         )
     if kind is PlaceKind.PARKING:
+        free, zone = int(rng.integers(3, 240)), ZONES[int(rng.integers(10, 45)) % len(ZONES)]
         return say(
-            "{free} spaces free, {price} an hour",
-            free=int(rng.integers(3, 240)),
-            price=Quantity(f"{rng.integers(10, 45) / 10:.1f}"),
+            "{zone}: {free} spaces free, {price} an hour",
+            zone=zone,
+            free=free,
+            price=Quantity(f"{PRICES[zone]:.2f}"),
         )
     if kind in (PlaceKind.HOME, PlaceKind.WORK):
         return say("Your address")

@@ -34,6 +34,7 @@ REASONS = {
     Restriction.LIMIT_CONTENT: say("Lists are shortened while driving"),
     Restriction.NO_SETUP: say("Available only while parked"),
     Restriction.NO_TEXT_MESSAGE: say("Messages are read out while driving"),
+    Restriction.NO_VOICE_TRANSCRIPTION: say("Dictated words are not shown while driving"),
 }
 """Texts shown for restrictions."""
 STANDING_KMH = 0.5

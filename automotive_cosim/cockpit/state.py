@@ -215,6 +215,8 @@ class State:
     """Key of the focused text field."""
     keyboard: bool = False
     """Whether its keys are on the screen."""
+    listening: bool = False
+    """Whether it takes what is spoken next, which driving does not lock."""
     typed: Mapping[str, str] = field(default_factory=dict)
     """Text typed so far, by field."""
     aside: Mapping[str, Mapping[str, str]] = field(default_factory=dict)

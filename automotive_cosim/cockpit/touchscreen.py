@@ -139,7 +139,7 @@ class Touchscreen:
         return self._scroll(lists[0], direction)
 
     def type_text(self, text: str, clear: bool = False) -> Feedback:
-        """Enters text into the focused field at once and closes the keyboard."""
+        """Enters text into the focused field at once and closes the keyboard; one that listens is spoken to."""
         field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
         if field is None or not field.focused:
             return self._nowhere_to_type(field)
@@ -147,7 +147,7 @@ class Touchscreen:
             return self._unusable(field)
         kept = "" if clear else field.text
         write(self._state, field.key, kept + text)
-        self._state.keyboard = False
+        self._state.keyboard = self._state.listening = False
         self._tree = None
         return Feedback(FeedbackCode.OK, say("the field reads {text}", text=repr(self._state.typed[field.key])))
 
@@ -159,7 +159,7 @@ class Touchscreen:
         if field is None or not field.focused:
             return self._nowhere_to_type(field)
         if field.on_enter is None:
-            return Feedback(FeedbackCode.REFUSED, say("nothing matches {text}", text=repr(field.text)))
+            return Feedback(FeedbackCode.REFUSED, field.lacking)
         self._state.focus = ""
         return self._perform(field.on_enter)
 

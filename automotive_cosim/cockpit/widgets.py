@@ -23,6 +23,7 @@ from automotive_cosim.cockpit.state import Message
 from automotive_cosim.cockpit.telltales import RoadSign, Telltale
 from automotive_cosim.cockpit.theme import HOME_STYLE, Icon, Palette, Style, Type
 from automotive_cosim.contracts import Severity
+from automotive_cosim.contracts.text import say
 
 if TYPE_CHECKING:
     from dataclasses import dataclass as frozen
@@ -244,6 +245,10 @@ class Field(Widget):
     focused: bool = False
     on_enter: Message | None = None
     """Message of the enter key; None while nothing matches the typed text."""
+    enters: str = say("Take the first result")
+    """What the enter key does."""
+    lacking: str = say("No matches yet")
+    """Why it does nothing, if it has no message."""
 
     class_name: ClassVar[str] = "EditText"
 

@@ -16,7 +16,7 @@ from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA, Signal
 from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.tasking.dialogue import Topic, questions
+from automotive_cosim.tasking.dialogue import Topic, questions, untold
 from automotive_cosim.tasking.named import ROWS, Named, Wording, keep
 
 
@@ -248,6 +248,32 @@ def says_figure(
         return False
     said = NUMBER.search(added[0]["text"])
     return said is not None and abs(_value(said) - figure) <= tolerance + 1e-9
+
+
+@goal(
+    "a message to {to} that says {tells}, and nothing of {without}",
+    writes=lambda *values: frozenset({"messages.sent"}),
+)
+def wrote(
+    start: Moment,
+    now: Moment,
+    trace: Sequence[Moment],
+    to: str,
+    tells: tuple[tuple[str, ...], ...],
+    without: tuple[str, ...] = (),
+) -> bool:
+    """Exactly one message was sent, to that person, in whatever words.
+
+    Args:
+        tells: what it has to say, each by any of its words or phrases.
+        without: what it must not mention.
+    """
+    key = "messages.sent"
+    added = now.commands[key][len(start.commands[key]) :]
+    if len(added) != 1 or added[0]["to"] != to:
+        return False
+    text, unsaid = [added[0]["text"]], tuple((word,) for word in without)
+    return not untold(text, tells) and untold(text, unsaid) == unsaid
 
 
 @goal(lambda key, place, value: f"entry {place + 1} of {key} is {value!r}")

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.apps.memo import RECORD
+from automotive_cosim.cockpit.apps.phone.state import FigureDraft, Phone
 from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.apps.timer import START_TIMER
 from automotive_cosim.cockpit.cockpit import Cockpit
@@ -157,6 +158,8 @@ def _leads_to(widget: Widget, here: Cockpit) -> str:
             return f"explore {item}"
         case Focus():
             return f"{here.screen} typing"
+        case Put(Phone(draft=FigureDraft(sentence="own"))):
+            return "figure in own words"
         case Show("apps") if more and here.screen == "store":
             return f"apps with {more[0]}"
         case Show(screen):

@@ -82,6 +82,9 @@ def test_there_is_enough_of_everything_and_no_two_are_alike(network: RoadNetwork
     assert len({contact.number for contact in people_known.contacts}) == len(people_known.contacts) >= 60
     assert len({place.name for place in atlas.places}) == len({place.edge_id for place in atlas.places}) >= 80
     assert {place.kind for place in atlas.places} == set(places.PlaceKind)
+    for place in atlas.of(places.PlaceKind.PARKING):
+        zone = next(zone for zone in places.ZONES if place.detail.startswith(f"{zone}: "))
+        assert place.detail.endswith(f" {places.PRICES[zone]:.2f} an hour")
 
 
 @pytest.mark.parametrize("count", [0, 1, 3])
@@ -401,9 +404,15 @@ def test_favourite_contacts_come_and_go(cockpit: Cockpit) -> None:
 
 
 def test_parking_is_paid_by_zone_and_time_and_not_twice_by_itself(cockpit: Cockpit) -> None:
-    press(cockpit, "open parking; parking.zone.b; parking.time.120")
+    assert press(cockpit, "open parking; parking.pay") is FeedbackCode.DISABLED
+    assert shown(cockpit, "parking.price") == "Choose a zone first"
+    assert press(cockpit, "parking.zone.b; parking.pay") is FeedbackCode.DISABLED
+    assert shown(cockpit, "parking.price") == "2.50 an hour"
+    press(cockpit, "parking.time.120")
     assert shown(cockpit, "parking.price") == "Price 5.00"
+    before = cockpit.commands()
     assert press(cockpit, "parking.pay") is OK
+    assert set(difference(before, cockpit.commands())) == {"payments"}
     assert cockpit.commands()["payments"] == [{"zone": "Zone B", "minutes": 120, "price": 5.0}]
     assert shown(cockpit, "parking.ticket.0") == "Zone B until 16:05"
 
@@ -596,7 +605,6 @@ def test_no_music_from_a_phone_that_is_not_linked(cockpit: Cockpit) -> None:
         (("open phone", "phone.favourite.0", "contact.call"), "calls"),
         (("open phone", "phone.tab.messages", "phone.thread.0", "thread.answer.0"), "messages.sent"),
         (("open memo", "memo.record", "memo.record"), "apps.memos"),
-        (("open parking", "parking.pay"), "payments"),
         (("open vehicle", "vehicle.tab.assistance", "adas.limiter"), ADAS.LIMITER_ACTIVE.path),
     ],
 )

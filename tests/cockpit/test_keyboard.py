@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 
+import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import Element, FeedbackCode, Surroundings
+from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.ids import key_of
 from tests.cockpit.fingers import find, press
+from tests.laws import over
+
+from .conftest import outside, town
 
 FIELDS = {"map": "map.search", "media": "media.search", "manual": "manual.search"}
 
@@ -84,3 +92,16 @@ def test_each_language_has_its_keys(standing: Cockpit, language: str, letter: st
     standing.visit("map")
     assert press(standing, "map.search", f"keyboard.{letter}") is FeedbackCode.OK
     assert find(standing, "map.search").text == letter
+
+
+@over(product((name for name in CarMake if name is not CarMake.DRAWN), ScreenSize))
+def test_the_keys_of_no_make_cover_the_field_they_write_into(name: CarMake, size: ScreenSize) -> None:
+    cockpit = Cockpit(town(), rng=np.random.default_rng(1), size=size, make=make_named(name))
+    cockpit.inject("Vehicle.Powertrain.Transmission.Gear", "P")
+    cockpit.sense(outside(speed_kmh=0.0), 0.0)
+    for screen, field in (FIELDS | {"figure": "figure.own"}).items():
+        cockpit.visit(screen)
+        if screen == "figure":
+            press(cockpit, "figure.say.own")
+        press(cockpit, field)
+        assert find(cockpit, field).is_focused

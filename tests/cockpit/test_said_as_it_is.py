@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, car
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.drawing import fit
-from automotive_cosim.cockpit.signals import CABIN, HMI, MIRROR, SEAT
+from automotive_cosim.cockpit.signals import CABIN, HMI, LINK, MIRROR, SEAT
 from automotive_cosim.cockpit.telltales import PLATES, SignKind, sign_picture
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button
@@ -200,6 +200,47 @@ def test_an_arrival_to_be_sent_begins_with_that_of_the_route(parked: Cockpit) ->
     tapped(parked, "figure.say.paid")
     tapped(parked, "figure.say.arrive")
     assert found(parked, "figure.words").text == "I'll be there at 14:20"
+
+
+def test_a_message_in_own_words_is_typed_when_parked(parked: Cockpit) -> None:
+    parked.visit("thread")
+    tapped(parked, "thread.figure")
+    tapped(parked, "figure.say.own")
+    assert not found(parked, "figure.send").is_enabled
+    tapped(parked, "figure.own")
+    parked.type_text("Bring the  blue folder")
+    assert tapped(parked, "figure.send").endswith("Bring the blue folder")
+    assert parked.commands()["messages.sent"][-1]["text"] == "Bring the blue folder"
+    assert found(parked, "figure.own").text == ""
+
+
+def test_what_differs_from_a_reply_by_its_signs_is_that_reply(parked: Cockpit) -> None:
+    parked.visit("thread")
+    tapped(parked, "thread.figure")
+    tapped(parked, "figure.say.own")
+    tapped(parked, "figure.own")
+    parked.type_text("on my way!")
+    assert parked.key_enter().code is FeedbackCode.OK
+    assert parked.commands()["messages.sent"][-1]["text"] == "On my way"
+
+
+def test_while_driving_a_message_is_dictated_and_not_shown(make: Make, around: Surroundings) -> None:
+    driving = make()
+    driving.sense(around, 0.0)
+    driving.visit("thread")
+    tapped(driving, "thread.figure")
+    tapped(driving, "figure.say.own")
+    assert tapped(driving, "figure.own") == "Typing is locked while driving"
+    tapped(driving, "figure.dictate")
+    assert driving.type_text("Bring the blue folder").code is FeedbackCode.OK
+    assert driving.type_text("again").code is FeedbackCode.RESTRICTED
+    tapped(driving, "figure.send")
+    assert driving.commands()["messages.sent"][-1]["text"] == "Bring the blue folder"
+    tapped(driving, "figure.back")
+    assert not any("blue folder" in element.text for element in driving.elements())
+    driving.command(LINK.VOICE_ASSISTANT, False)
+    driving.visit("figure")
+    assert not found(driving, "figure.dictate").is_enabled
 
 
 def test_what_goes_by_steps_shows_its_ends(parked: Cockpit) -> None:

@@ -17,6 +17,8 @@ from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.map.state import Navigation
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.figure import SENTENCES
+from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.drawing import Ink
 from automotive_cosim.cockpit.geometry import Rect
@@ -242,6 +244,26 @@ def test_every_actuator_is_set_from_home(make: Make, around: Surroundings, walke
             twin.tap(*widget.rect.centre)
             set_by_taps |= set(difference(before, twin.signals.commanded()))
     assert set(ACTUATORS) - set_by_taps == set()
+
+
+def test_no_form_is_ready_before_anybody_filled_it_in(views: Any) -> None:
+    """What is sent or paid for good stands on the button in full, tells what the car knows, or cannot be sent."""
+    arrive = SENTENCES["arrive"].said(14 * 60 + 20)  # the route's, in steps of five minutes
+    ready = set[str]()
+    for view in views("parked"):
+        forms = [view.cockpit]
+        for key in SENTENCES if view.cockpit.screen == "figure" else ():
+            forms.append(view.cockpit.copy())
+            assert press(forms[-1], f"figure.say.{key}") in (FeedbackCode.OK, FeedbackCode.NO_EFFECT)
+        for cockpit in forms:
+            for widget in cockpit.tree.walk():
+                command = widget.on_tap.command if widget.on_tap else None
+                aims = command.aims(cockpit._state) if command else frozenset()
+                if widget.usable and aims & {"payments", "messages.sent", "alerts"}:
+                    whole = isinstance(command, WarnDriver) and command.alert is not None
+                    assert whole or getattr(command, "text", "") in (widget.text, arrive), widget.key
+                    ready.add(widget.key)
+    assert {"thread.answer.0", "figure.send"} <= ready
 
 
 def what_can_be_touched_lies_on_the_screen_is_named_large_and_unique(drawn: list[Drawn]) -> None:

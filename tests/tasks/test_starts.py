@@ -6,12 +6,14 @@ import re
 from dataclasses import replace
 from datetime import datetime
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.places import PRICES, ZONES
 from automotive_cosim.cockpit.signals import HVAC, LIGHTS
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.geo.place import Place, shipped
@@ -149,3 +151,12 @@ def test_where_a_rule_speaks_of_hampered_sight_it_is_hampered_beyond_doubt(task,
     falls = half.start.weather.precipitation > 0
     is_day = sun_at(lon_deg, lat_deg, time_of(half.start)).elevation_deg > 0
     assert not (said and falls and is_day) or half.start.weather.visibility < FOG_BELOW_M, said
+
+
+@over(task for task in CATALOGUE.values() if any("Car Park" in str(task.half(name).start) for name in task.halves))
+def test_a_car_park_s_price_is_that_of_its_zone(task: Task) -> None:
+    for name, seed in product(task.halves, range(6)):
+        details = draw(task, name, seed).half.start.belongings.details
+        for told in (told for place, told in details.items() if "Car Park" in place and "an hour" in told):
+            zone = next(zone for zone in ZONES if told.startswith(f"{zone}: "))
+            assert f"{PRICES[zone]:.2f} an hour" in told

@@ -12,6 +12,7 @@ from automotive_cosim.cockpit.commands import Put, SimpleCommand
 from automotive_cosim.cockpit.flow import card, fill, panels, stack
 from automotive_cosim.cockpit.functions import CallMade, offered
 from automotive_cosim.cockpit.layout import REST
+from automotive_cosim.cockpit.places import PRICES, ZONES
 from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
@@ -19,10 +20,6 @@ from automotive_cosim.cockpit.widgets import Button, Label, Look, Row, Widget
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import Quantity, say
 from automotive_cosim.formats.annotations import OneOf
-
-ZONES = (say("Zone A"), say("Zone B"), say("Zone C"))
-PRICES = {"Zone A": 4.0, "Zone B": 2.5, "Zone C": 1.2}
-"""Price per hour."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +36,18 @@ class Ticket:
 class Parking(AppData):
     """The space as it is set, and the tickets."""
 
-    zone: str = ZONES[0]
-    minutes: int = 60
+    zone: str = ""
+    """Empty until it is chosen, as the car does not know it."""
+    minutes: int = 0
+    """0 until it is chosen."""
     tickets: tuple[Ticket, ...] = ()
+
+    @property
+    def unset(self) -> str:
+        """What is still to be chosen; empty if nothing is."""
+        if not self.zone:
+            return say("Choose a zone first")
+        return "" if self.minutes else say("Choose a duration first")
 
     @property
     def price(self) -> float:
@@ -62,9 +68,11 @@ OFFLINE = say("Paying needs a connection")
 
 def _pay(state: State) -> Feedback:
     """Pay for the parking space as it is set."""
+    now = state.of(Parking)
     if not state.signals[LINK.ONLINE] or state.outside is None:
         return state.refused(OFFLINE)
-    now = state.of(Parking)
+    if now.unset:
+        return state.refused(now.unset)
     until = state.clock_at(state.outside.local_time + timedelta(minutes=now.minutes))
     ticket = Ticket(now.zone, now.minutes, now.price, until)
     state.keep(replace(now, tickets=(*now.tickets, ticket)))
@@ -102,7 +110,9 @@ def parking(state: State) -> tuple[Widget, ...]:
         )
         for stay in STAYS
     ]
-    price = say("Price {price}", price=Quantity(f"{now.price:.2f}"))
+    price = now.unset or say("Price {price}", price=Quantity(f"{now.price:.2f}"))
+    if now.zone and not now.minutes:
+        price = say("{price} an hour", price=Quantity(f"{PRICES[now.zone]:.2f}"))
     pay = Button(
         key="parking.pay",
         text=say("Pay now"),
@@ -111,7 +121,7 @@ def parking(state: State) -> tuple[Widget, ...]:
         style=Type.TITLE,
         look=Look.ACCENT,
         on_tap=PAY,
-        disabled="" if state.signals[LINK.ONLINE] else OFFLINE,
+        disabled=now.unset if state.signals[LINK.ONLINE] else OFFLINE,
     )
     order = card(
         title(Icon.TICKET, say("Pay for parking")),

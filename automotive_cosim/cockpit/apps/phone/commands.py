@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from automotive_cosim.cockpit.apps.phone.state import Directory, OnCall, PastCall, Phone, tell
+from automotive_cosim.cockpit.apps.phone.state import Directory, OnCall, PastCall, Phone, Sent, tell
 from automotive_cosim.cockpit.commands import SimpleCommand
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import LINK
@@ -99,6 +99,8 @@ class SendReply(Command):
 
     to: str
     text: str
+    own: bool = False
+    """Whether in own words, which leave their field and are not shown while driving."""
 
     def aims(self, state: State) -> frozenset[str]:
         return frozenset({"messages.sent"})
@@ -110,9 +112,12 @@ class SendReply(Command):
         ringing = state.of(Phone).ringing
         if ringing is not None and ringing.who == self.to:
             DECLINE_CALL.perform(state)
-        state.keep(state.of(Phone).replied(self.to, self.text, state.time_s))
+        state.keep(state.of(Phone).replied(Sent(self.to, self.text, state.time_s, self.own)))
         tell(state)
-        return state.said(say("Sent to {to}: {text}", to=self.to, text=self.text), Icon.REPLY)
+        hidden = state.locked(Restriction.NO_VOICE_TRANSCRIPTION) if self.own else ""
+        if self.own:
+            state.focus, state.typed = "", {}
+        return state.said(say("Sent to {to}: {text}", to=self.to, text=hidden or self.text), Icon.REPLY)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,10 +15,11 @@ from automotive_cosim.cockpit.apps.phone.commands import (
     SendReply,
 )
 from automotive_cosim.cockpit.apps.phone.figure import SENTENCES
-from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phone
+from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phone, in_own_words
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.functions import CLOCK, CallMade, disabled, locked, minute_of, named, offered
 from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import Feedback, FeedbackCode
 from automotive_cosim.contracts.text import say
@@ -66,6 +67,22 @@ def send_message(state: State, to: ContactName, text: Annotated[str, OneOf(TEMPL
     """Send somebody a message. It cannot be taken back."""
     found = _found(state, to)
     return found if isinstance(found, Feedback) else SendReply(found, TEMPLATES[TEMPLATES.index(text)])
+
+
+@offered
+def write_message(
+    state: State, to: ContactName, text: Annotated[str, "The message, at most 120 characters are sent."]
+) -> CallMade:
+    """Send somebody a message in own words, where no text of send_message fits; while driving it is dictated. It
+    cannot be taken back."""
+    found, words = _found(state, to), in_own_words(text)
+    if isinstance(found, Feedback):
+        return found
+    if not words:
+        return disabled(say("Write or dictate the message first"))
+    if state.locked(Restriction.NO_KEYBOARD) and not state.signals[LINK.VOICE_ASSISTANT]:
+        return disabled(say("The microphone is off"))
+    return SendReply(found, words, own=True)
 
 
 @offered
@@ -143,4 +160,13 @@ def _found(state: State, name: str) -> str | Feedback:
     return found if found in listed else locked(state, Restriction.LIMIT_CONTENT) or found
 
 
-FUNCTIONS = (call, handle_call, send_message, send_figure, read_messages, favourite_contact, do_not_disturb)
+FUNCTIONS = (
+    call,
+    handle_call,
+    send_message,
+    write_message,
+    send_figure,
+    read_messages,
+    favourite_contact,
+    do_not_disturb,
+)

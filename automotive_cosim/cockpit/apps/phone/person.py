@@ -74,14 +74,13 @@ def thread(state: State) -> tuple[Widget, ...]:
     known = state.of(Directory).thread(who, phone)
     hidden = state.locked(Restriction.NO_TEXT_MESSAGE)
     opened = who in phone.read or not (known and known.unread)
-    sent = [(sent.text, say("You")) for sent in phone.sent if sent.to == who]
+    unseen = state.locked(Restriction.NO_VOICE_TRANSCRIPTION)
+    sent = [((each.own and unseen) or each.text, say("You")) for each in phone.sent if each.to == who]
     said = [(text, who) for text in known.lines] if known else []
     lines = [*(said if opened and not hidden else []), *sent]
     photo = known.photo if known and opened and not hidden else None
     back = Button(key="thread.back", description=say("Back"), icon=Icon.BACK, on_tap=Back())
-    figure = Button(
-        key="thread.figure", text=say("Send time, price…"), icon=Icon.MESSAGE, on_tap=Show("figure", who)
-    )
+    figure = Button(key="thread.figure", text=say("Write…"), icon=Icon.MESSAGE, on_tap=Show("figure", who))
     read = Button(
         key="thread.read",
         text=say("Read out") if hidden else say("Open"),

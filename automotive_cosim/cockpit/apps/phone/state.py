@@ -12,7 +12,7 @@ import numpy as np
 
 from automotive_cosim.cockpit.apps.phone.arrivals import RINGS_S, Arrival, checked
 from automotive_cosim.cockpit.photos import Photo
-from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
+from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, STRING_LIMIT
 from automotive_cosim.cockpit.signals import CALL, LINK
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
@@ -30,6 +30,20 @@ TEMPLATES = (
     say("I've arrived"),
 )
 """Replies that one tap sends."""
+OWN = "own"
+"""Sentence of a draft in own words."""
+
+
+def in_own_words(text: str) -> str:
+    """A message as it is sent: a line of ``STRING_LIMIT`` characters, or the reply that differs by signs alone."""
+    line = " ".join(text.split())[:STRING_LIMIT]
+    return next((reply for reply in TEMPLATES if _letters(reply) == _letters(line)), line)
+
+
+def _letters(text: str) -> str:
+    return "".join(letter for letter in text.casefold() if letter.isalnum())
+
+
 _FIRST = """Ada Bruno Carla Dario Elif Femi Greta Hugo Ines Jonas Kaya Lena Milo Nora Otis Petra Quinn Rosa Samir
     Tilda"""
 _LAST = "Adler Bianchi Costa Duval Eklund Farrow Girard Holm Ibarra Jansen Keller Lindqvist Moreau Novak"
@@ -213,15 +227,18 @@ class Sent:
     text: str
     time_s: float = 0.0
     """When it was sent."""
+    own: bool = False
+    """Whether it is in own words."""
 
 
 @dataclass(frozen=True, slots=True)
 class FigureDraft:
-    """A message with a figure that is not sent yet."""
+    """A message with a figure, or in own words, that is not sent yet."""
 
     sentence: str
-    """Key of its sentence."""
-    value: float
+    """Key of its sentence; or ``OWN``."""
+    value: float | None = None
+    """Its figure; None until it is set."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,9 +281,9 @@ class Phone(AppData):
         read = tuple(who for who in self.read if who != message.who)
         return replace(self, inbox=(*self.inbox, message), read=read)
 
-    def replied(self, who: str, text: str, time_s: float) -> Phone:
+    def replied(self, message: Sent) -> Phone:
         """With a sent message; what they wrote stays unread until it is opened."""
-        return replace(self, sent=(*self.sent, Sent(who, text, time_s)))
+        return replace(self, sent=(*self.sent, message))
 
     def opened(self, who: str) -> Phone:
         """A copy with a contact's messages read."""
