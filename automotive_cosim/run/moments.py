@@ -133,7 +133,7 @@ def in_its_fields(folder: Path, trial: str, judged: J) -> J:
     path = judged_file(folder, trial)
     try:
         written = read_json(path)["classes"]
-        writer = _Writer({name: tuple(names) for name, names in written})
+        writer = _Writer(dict(written))
         value = writer.value(judged.packed())
         again: J = _Reader(writer.classes, writer.pool).value(value).unpacked()
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
@@ -190,7 +190,7 @@ PLAIN = frozenset((type(None), bool, int, float, str))
 class _Writer:
     """Turns values into JSON and fills the pool."""
 
-    def __init__(self, written: Mapping[str, tuple[str, ...]] = MappingProxyType({})) -> None:
+    def __init__(self, written: Mapping[str, Sequence[str]] = MappingProxyType({})) -> None:
         """Writes the fields of ``written`` alone of a class that it names."""
         self._written = written
         self.classes: list[tuple[str, tuple[str, ...]]] = []
@@ -240,10 +240,9 @@ class _Writer:
     def _class(self, kind: type) -> int:
         if kind not in self._numbers:
             self._numbers[kind] = len(self.classes)
-            name, names = f"{kind.__module__}:{kind.__qualname__}", ()
-            if is_dataclass(kind):
-                names = tuple(each.name for each in fields(kind))
-                names = tuple(each for each in self._written.get(name, names) if each in names)
+            name = f"{kind.__module__}:{kind.__qualname__}"
+            known = [each.name for each in fields(kind)] if is_dataclass(kind) else []
+            names = tuple(each for each in self._written.get(name, known) if each in known)
             self.classes.append((name, names))
         return self._numbers[kind]
 
