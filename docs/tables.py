@@ -29,6 +29,8 @@ from automotive_cosim.interface import spaces
 from automotive_cosim.interface.house_rules import HOUSE
 from automotive_cosim.models.gguf import KNOWN
 from automotive_cosim.publish.leaderboard import board
+from automotive_cosim.report.summary import DIMENSIONS
+from automotive_cosim.report.tables import Table
 from automotive_cosim.run import difficulty
 from automotive_cosim.safety.protocol.evidence import protocol
 from automotive_cosim.safety.space import LIBRARY, read_space
@@ -39,8 +41,11 @@ DOCS = Path(__file__).parent
 MARKED = re.compile(r"(<!-- (\w+), made by `python -m docs\.tables` -->\n\n).*?(\n\n<!-- end -->)", re.DOTALL)
 """A table of a page: its mark with its name, the table, the mark of its end."""
 FRAMEWORK = DOCS / "examples" / "frameworks" / "openai_agents.py"
-SHOWN = ("Agent", "Model", "Prompt", "Safety pairs", "All episodes", "Bundle")
-"""Columns of the leaderboard that its page here shows."""
+HIDDEN = (
+    "Input", "Clock", "Latency", "Sees", "Feedback", "Screen", "Language", "Make", "Order", "Hears", "Policy",
+    "Attention", *DIMENSIONS.values(),
+)  # fmt: skip
+"""Columns of the leaderboard that its page here leaves out."""
 
 
 def main() -> None:
@@ -129,16 +134,23 @@ def _leaderboard() -> str:
         RuntimeError: a bundle has a problem.
     """
     with TemporaryDirectory() as scratch:
-        made, left_out = board(DOCS / "leaderboard" / "bundles", Path(scratch) / "board.html")
-    if left_out:
-        raise RuntimeError(f"docs/leaderboard/bundles: {'; '.join(left_out)}")
+        made = board(DOCS / "leaderboard" / "bundles", Path(scratch) / "board.html")
+    if made.left_out:
+        raise RuntimeError(f"docs/leaderboard/bundles: {'; '.join(made.left_out)}")
     parts: list[str] = []
-    for places, conditions, _ in made:
-        shown = [place for place, head in enumerate(places.columns) if head in SHOWN]
-        rows = [[row[place] for place in shown] for row in places.rows]
+    for places, conditions, _ in made.tables:
         parts.append(f"{conditions.tasks}, {conditions.scenarios}, seed {conditions.seeds}, {conditions.limits}:")
-        parts.append(_table([places.columns[place] for place in shown], rows))
-    return "\n\n".join(parts)
+        parts.append(_shown(places))
+    for places in made.drives:
+        parts += f"{places.title}:", _shown(places)
+    return "\n\n".join((*parts, "What models got wrong, with an episode of each kind:", _shown(made.lost)))
+
+
+def _shown(table: Table) -> str:
+    shown = [place for place, head in enumerate(table.columns) if head not in HIDDEN]
+    return _table(
+        [table.columns[place] for place in shown], [[row[place] for place in shown] for row in table.rows]
+    )
 
 
 def _fields(name: str) -> str:

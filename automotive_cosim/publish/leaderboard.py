@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -22,7 +22,10 @@ from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
 from automotive_cosim.publish.verify import verify
+from automotive_cosim.report.consistency import pass_hat
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, told, whole
+from automotive_cosim.report.failures import FailureClass
+from automotive_cosim.report.findings import classes
 from automotive_cosim.report.results import Contestant, contestant, pairs, read_results
 from automotive_cosim.report.stats import Rate, rate
 from automotive_cosim.report.summary import DIMENSIONS, NONE, input_of, rate_in_words
@@ -36,15 +39,26 @@ from automotive_cosim.run.versions import minor
 
 COLUMNS = (
     "Agent", "Model", "Input", *(each.words.heading for each in TABLE), *DIMENSIONS.values(),
-    "Safety pairs", "All episodes", "Bundle",
+    "Safety pairs", "All episodes", "Every repeat", "Tokens", "Seconds", "Bundle",
 )  # fmt: skip
+LOST_COLUMNS = (
+    "Agent",
+    "Model",
+    *(each.words.heading for each in TABLE),
+    "What went wrong",
+    "Episodes",
+    "One of them",
+)
 
 DRIVE_COLUMNS = (
     "Agent", "Model", "Input", *(each.words.heading for each in TABLE), "Judged",
     *(name for name, _, _ in FIGURES[:WITH_INTERVAL]), "Bundle",
 )  # fmt: skip
 
-DIVIDED = "Per cent of the planned episodes (95 % interval), then successes/planned; what was not run is an error."
+DIVIDED = (
+    "Per cent of the planned episodes (95 % interval), then successes/planned; what was not run is an error. Every "
+    "repeat: pass^k. Tokens to and from the model, and seconds of waiting for it, are means of the judged episodes."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +89,18 @@ BoardTable = tuple[Table, BundleConditions, list[str]]
 
 
 @dataclass(frozen=True, slots=True)
+class Board:
+    """What a page of bundles shows."""
+
+    tables: list[BoardTable]
+    """Of tasks."""
+    lost: Table
+    drives: list[Table]
+    left_out: list[str]
+    """The bundles that were left out, and why."""
+
+
+@dataclass(frozen=True, slots=True)
 class BoardEntry:
     """One contestant of one bundle."""
 
@@ -86,6 +112,14 @@ class BoardEntry:
     conditions: BundleConditions
     rates: tuple[Rate, ...]
     """By dimension, over first halves; of the safety pairs; of all episodes."""
+    beside: tuple[str, str, str]
+    """pass^k, tokens and seconds of an episode."""
+    lost: tuple[tuple[str, str, str], ...]
+    """Of each class of failures that occurs: its name, how many episodes of how many judged, and one of them."""
+
+    @property
+    def conditions_in_words(self) -> tuple[str, ...]:
+        return tuple(line.told(line.of(self.contestant.conditions)) for line in TABLE)
 
     @property
     def order(self) -> tuple[float, float, str, str]:
@@ -136,17 +170,14 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
     Returns:
         The bundles that were left out, and why.
     """
-    return board(folder, out, workers=workers, mixed=mixed)[1]
+    return board(folder, out, workers=workers, mixed=mixed).left_out
 
 
-def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> tuple[list[BoardTable], list[str]]:
+def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> Board:
     """Checks every bundle and writes the page.
 
     Args:
         mixed: put evaluations of several versions of the suite into one table, and say so.
-
-    Returns:
-        The tables of tasks, and the bundles that were left out with why.
 
     Raises UserError: there is no bundle without a problem, or the page cannot be written."""
     if not folder.is_dir():
@@ -175,11 +206,12 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
         )
         driven = [replace(each, suite=suite) for each in driven]
         entries = [replace(entry, conditions=replace(entry.conditions, suite=suite)) for entry in entries]
-    made = tables(entries)
+    made = Board(tables(entries), lost_table(entries), drives_tables(driven), left_out)
     page = render(
         "publish/leaderboard.html",
-        tables=made,
-        drives=drives_tables(driven),
+        tables=made.tables,
+        lost=made.lost,
+        drives=made.drives,
         left_out=left_out,
         rates=DIVIDED,
     )
@@ -187,7 +219,7 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
         write_whole(out, page)
     except OSError as error:
         raise cannot_write(out.parent, error) from error
-    return made, left_out
+    return made
 
 
 def _contestants(bundle: Path) -> tuple[list[BoardEntry], list[DrivenEntry]]:
@@ -199,6 +231,7 @@ def read_entries(bundle: Path) -> list[BoardEntry]:
     """The contestants of a bundle. Raises UserError: it cannot be read."""
     with archive.unpacked(bundle) as folder:
         contents, results = read_contents(folder), read_results(folder)
+        failed = classes(results)
     made = []
     for each in results.contestants:
         rows = results.planned_of(each)
@@ -206,8 +239,31 @@ def read_entries(bundle: Path) -> list[BoardEntry]:
         by_dimension = [_rate(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
         rates = (*by_dimension, _rate(pair for pair, _ in pairs(rows)), _rate(rows))
         conditions = _conditions(minor(contents.suite), results.manifest["plan"], rows)
-        made.append(BoardEntry(bundle.name, contents.sha256, contents.suite, each, conditions, rates))
+        beside = _beside(rows, int(results.manifest["plan"]["repeats"]))
+        lost = _lost(
+            [row for row in rows if row.id in failed], failed, sum(row.outcome is not None for row in rows)
+        )
+        made.append(BoardEntry(bundle.name, contents.sha256, contents.suite, each, conditions, rates, beside, lost))
     return made
+
+
+def _beside(rows: Sequence[EpisodeRow], repeats: int) -> tuple[str, str, str]:
+    judged = [row for row in rows if row.outcome is not None]
+    if not any(row.model_seconds for row in judged):
+        return pass_hat(judged, repeats), NONE, NONE
+    tokens = sum(row.tokens_in + row.tokens_out for row in judged) / len(judged)
+    return (
+        pass_hat(judged, repeats),
+        f"{tokens:,.0f}",
+        f"{sum(row.model_seconds for row in judged) / len(judged):.1f}",
+    )
+
+
+def _lost(
+    rows: Sequence[EpisodeRow], classes: Mapping[str, FailureClass], judged: int
+) -> tuple[tuple[str, str, str], ...]:
+    of_class = {name: [row.id for row in rows if classes[row.id] is name] for name in FailureClass}
+    return tuple((name.words, f"{len(ids)} of {judged}", min(ids)) for name, ids in of_class.items() if ids)
 
 
 def _rate(rows: Iterable[TrialRow]) -> Rate:
@@ -274,12 +330,25 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
                 each.method,
                 each.base_model,
                 input_of(Contestant(each.agent, each.model)),
-                *(line.told(line.of(each.conditions)) for line in TABLE),
+                *entry.conditions_in_words,
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
+                *entry.beside,
                 f"{entry.bundle} ({entry.version}), {entry.sha256[:12]}",
             )
         )
     return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=3 + len(TABLE))
+
+
+def lost_table(entries: Sequence[BoardEntry]) -> Table:
+    """What went wrong in the episodes that models did not solve, with one of each class to open."""
+    rows = tuple(
+        (entry.contestant.method, entry.contestant.base_model, *entry.conditions_in_words, *each)
+        for entry in sorted(entries, key=lambda entry: entry.order)
+        if entry.beside[-1] != NONE
+        for each in entry.lost
+    )
+    note = "Read from the trace by fixed rules. Unpack the bundle, a zip archive, to open the episode in `serve`."
+    return Table("lost", "What went wrong", LOST_COLUMNS, rows, note, heads=len(LOST_COLUMNS))
 
 
 def _conditions(suite: str, plan: Json, rows: Sequence[EpisodeRow]) -> BundleConditions:

@@ -25,7 +25,7 @@ from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.moments import Judged, judged_file, read_judged
+from automotive_cosim.run.moments import Judged, in_its_fields, judged_file, read_judged
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rerun import Player, compare, played
 from automotive_cosim.run.row import as_json, steady
@@ -181,5 +181,6 @@ def _differences(
     names = [name for name in steady(row) if name not in {OF_THE_CATALOGUE, *of_the_agent}]
     yield from differences(ROWS, row.id, as_json(row), as_json(new_row), names, "its replay")
     path, kind = judged_file(folder, row.id), JudgedDrive if isinstance(row, DriveTrialRow) else Judged
-    if read_judged(folder, row.id, kind) != again.judged:
+    written, judged = read_judged(folder, row.id, kind), again.judged
+    if judged is None or written != in_its_fields(folder, row.id, judged):
         yield Problem(path.relative_to(folder).as_posix(), "", "differs from its replay")

@@ -81,6 +81,11 @@ def pass_hats(rows: Iterable[EpisodeRow], most: int) -> list[float | None]:
     return found
 
 
+def pass_hat(rows: Iterable[EpisodeRow], k: int) -> str:
+    """pass^k of a contestant's judged episodes with its interval, in words; a dash for one run of each."""
+    return _share(_instances(rows), all_pass, k) if k > 1 else NONE
+
+
 def _of(rows: Sequence[EpisodeRow], dimension: str) -> list[EpisodeRow]:
     return [row for row in rows if row.dimension == dimension]
 

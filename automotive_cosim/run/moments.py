@@ -22,6 +22,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from datetime import datetime
 from enum import Enum
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Self, TypeVar
 from zoneinfo import ZoneInfo
 
@@ -124,6 +125,22 @@ def read_judged(folder: Path, trial: str, kind: type[J]) -> J:
     return value.unpacked()
 
 
+def in_its_fields(folder: Path, trial: str, judged: J) -> J:
+    """A trial's input of a verdict as the version that wrote its file would have read it back: a field that came
+    later has its default.
+
+    Raises UserError: there is no such file, or it is damaged."""
+    path = judged_file(folder, trial)
+    try:
+        written = read_json(path)["classes"]
+        writer = _Writer(dict(written))
+        value = writer.value(judged.packed())
+        again: J = _Reader(writer.classes, writer.pool).value(value).unpacked()
+    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
+    return again
+
+
 def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:
     """A moment without what follows from the rest: the context, and unchanged signals and commands."""
     bare: list[Any] = []
@@ -173,7 +190,9 @@ PLAIN = frozenset((type(None), bool, int, float, str))
 class _Writer:
     """Turns values into JSON and fills the pool."""
 
-    def __init__(self) -> None:
+    def __init__(self, written: Mapping[str, Sequence[str]] = MappingProxyType({})) -> None:
+        """Writes the fields of ``written`` alone of a class that it names."""
+        self._written = written
         self.classes: list[tuple[str, tuple[str, ...]]] = []
         self.pool: list[Any] = []
         self._numbers: dict[type, int] = {}
@@ -221,8 +240,10 @@ class _Writer:
     def _class(self, kind: type) -> int:
         if kind not in self._numbers:
             self._numbers[kind] = len(self.classes)
-            names = tuple(each.name for each in fields(kind)) if is_dataclass(kind) else ()
-            self.classes.append((f"{kind.__module__}:{kind.__qualname__}", names))
+            name = f"{kind.__module__}:{kind.__qualname__}"
+            known = [each.name for each in fields(kind)] if is_dataclass(kind) else []
+            names = tuple(each for each in self._written.get(name, known) if each in known)
+            self.classes.append((name, names))
         return self._numbers[kind]
 
     def _once(self, made: list[Any]) -> list[Any]:

@@ -3,14 +3,20 @@
 import html
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, read_contents
-from automotive_cosim.publish.leaderboard import read_entries, tables, write_leaderboard
+from automotive_cosim.publish.leaderboard import lost_table, read_entries, tables, write_leaderboard
+from automotive_cosim.publish.verify import verify
 from automotive_cosim.report.stats import rate
+
+BUNDLES = Path(__file__).parents[2] / "docs" / "leaderboard" / "bundles"
+REPLAYS = 2
+"""Of each bundle; they take seconds each."""
 
 
 @pytest.fixture
@@ -108,3 +114,24 @@ def test_versions_stand_apart_unless_told_and_then_the_page_says_so(shelf, tmp_p
     assert (apart.count("<tbody>"), mixed.count("<tbody>")) == (2, 1)
     assert "mixes versions" not in apart
     assert f"mixes versions 0.1, {entries[0].conditions.suite} " in mixed
+
+
+@pytest.mark.sumo
+@pytest.mark.parametrize("bundle", sorted(BUNDLES.iterdir()), ids=lambda path: path.stem)
+def test_what_is_on_the_board_is_driven_again_to_the_same_end(bundle):
+    """Drawn episodes of every bundle in the repository, models' with the answers on record: prompts, thoughts, acts
+    and verdicts are those that it has."""
+    checked = verify(bundle, replays=REPLAYS, seed=1)
+    assert not checked.problems
+    if "controls" not in bundle.name:
+        assert f"  {REPLAYS} drives with the recorded questions and answers of a model" in checked.facts
+
+
+def test_the_board_says_of_models_what_they_cost_and_what_went_wrong(shelf, packed):
+    (entry, *_) = read_entries(packed)
+    plain = replace(entry, lost=(("Safety", "2 of 3", "id-1"), ("Intent", "1 of 3", "id-2")))
+    asked = replace(plain, beside=("–", "1,200", "3.5"))
+    assert not lost_table([plain]).rows, "no model, nothing that it got wrong"
+    assert [row[-3:] for row in lost_table([plain, asked]).rows] == list(plain.lost)
+    ((table, _, _),) = tables([asked])
+    assert [table.rows[0][table.columns.index(name)] for name in ("Tokens", "Seconds")] == ["1,200", "3.5"]
