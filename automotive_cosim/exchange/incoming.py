@@ -44,6 +44,9 @@ NO_TYPE = re.compile(rb'(<signal\b[^>]*\stype=)(""|\'\')')
 """A sign that says nothing of its kind: netconvert reads it only with a word that stands for none."""
 HEIGHTS = re.compile(rb"\+(geoidgrids|geoid_crs|vunits)=[^\s<\]]*")
 """What a projection says of heights, which roads here have not; its grids are on few machines."""
+AS_NETCONVERT_HAS = {"stop": "shoulder", "parking": "shoulder", "connectingRamp": "driving", "slipLane": "driving"}
+"""Types of lanes that netconvert takes for others: it opens hard shoulders and parking spaces to all cars, and
+leaves out ramps between motorways and slip lanes."""
 NET, ROUTES = "road.net.xml", "none.rou.xml"
 
 
@@ -124,8 +127,8 @@ def road_network(source: Path, folder: Path) -> Any:
 def _for_netconvert(source: Path, ours: Path) -> bool:
     """Makes a file of roads one that netconvert reads rightly; returns whether they keep left.
 
-    It reads no rule: roads that keep left become their mirror image, which keeps right. And it reads the limits of
-    lanes alone, not those of roads.
+    It reads no rule: roads that keep left become their mirror image, which keeps right. It reads limits of lanes
+    alone, and forgets who may use a lane where its limit changes. What OpenDRIVE 1.8 says of users it refuses.
     """
     roads = read_roads(source)
     keeps_left = any(road.keeps_left for road in roads.values())
@@ -150,10 +153,28 @@ def _tell_limits(element: ET.Element, road: OpenDriveRoad) -> None:
         from_m = float(section.attrib["s"])
         here = {max(0.0, at_m - from_m): mps for at_m, mps in limits if at_m < end_m}
         for lane in section.iterfind("*/lane"):
-            own_m = min((float(speed.get("sOffset", "0")) for speed in lane.iter("speed")), default=math.inf)
-            for offset_m, mps in here.items():
-                if offset_m < own_m:
-                    ET.SubElement(lane, "speed", sOffset=repr(offset_m), max=repr(mps))
+            lane.set("type", AS_NETCONVERT_HAS.get(lane.get("type", ""), lane.get("type", "")))
+            _restate(lane, here)
+
+
+def _restate(lane: ET.Element, limits: Mapping[float, float]) -> None:
+    """States the limits of the road up to the lane's own, and who may use it wherever its limit changes."""
+    own_m = min(map(_offset_m, lane.findall("speed")), default=math.inf)
+    for at_m, mps in limits.items():
+        if at_m < own_m:
+            ET.SubElement(lane, "speed", sOffset=repr(at_m), max=repr(mps))
+    users: dict[float, list[dict[str, str]]] = {}
+    for access in lane.findall("access"):
+        parts = [{"restriction": each.attrib["type"]} for each in access.findall("restriction")]
+        users.setdefault(_offset_m(access), []).extend(access.attrib | each for each in parts or [{}])
+        lane.remove(access)
+    for at_m in sorted({*users, *map(_offset_m, lane.findall("speed"))}):
+        for attributes in users.get(max((each for each in users if each <= at_m), default=-1.0), ()):
+            ET.SubElement(lane, "access", attributes | {"sOffset": repr(at_m)})
+
+
+def _offset_m(element: ET.Element) -> float:
+    return float(element.get("sOffset", "0"))
 
 
 # --- writing -----------------------------------------------------------------------------------------------------

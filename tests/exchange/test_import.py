@@ -227,6 +227,25 @@ def test_the_limits_of_a_road_are_those_of_its_lanes_that_state_none(rule, tmp_p
     assert seen(limits_mps) == pytest.approx(seen(told), abs=0.01)
 
 
+NO_TRUCK = '<access sOffset="0" rule="deny"{}</access>'
+
+
+@pytest.mark.parametrize(
+    "deny", [NO_TRUCK.format(' restriction="truck">'), NO_TRUCK.format('><restriction type="truck"/>')]
+)
+def test_nobody_drives_on_shoulders_and_parking_spaces_and_ramps_are_roads(deny, tmp_path, sumo):
+    side = {"side": "right", "sign": "-"}
+    section = LIMITED.format(0, deny, **side)
+    first, last = section.split("</right>")
+    width = '<width sOffset="0" a="3.5" b="0" c="0" d="0"/>'
+    kinds = "slipLane", "connectingRamp", "stop", "parking"
+    more = "".join(f'<lane id="-{2 + n}" type="{kind}">{width}</lane>' for n, kind in enumerate(kinds))
+    (tmp_path / "a.xodr").write_text(LIMITS.format("RHT", f"{first}{more}</right>{last}", ""), "utf-8")
+    lanes = [edge.getLanes() for edge in road_network(tmp_path / "a.xodr", tmp_path).getEdges()]
+    assert [[lane.allows("passenger") for lane in each] for each in lanes] == [[True] * 3] * 3
+    assert [[lane.allows("truck") for lane in each] for each in lanes] == [[True, True, False]] * 3
+
+
 WAYS = {"in": "a b 20", "slow": "b c 5", "up": "b d 30", "down": "d c 30", "out": "c e 20"}
 
 
