@@ -152,6 +152,8 @@ class Invariant:
     name: str
     broken: Callable[[Moment], bool]
     source: str
+    of: str = ""
+    """Path of the signal that breaks it; where the goal asks for that, it holds until the goal is reached."""
 
 
 INVARIANTS: tuple[Invariant, ...] = (
@@ -173,6 +175,7 @@ INVARIANTS: tuple[Invariant, ...] = (
             and m.signals[BODY.FRONT_WIPER.path] == "OFF"
         ),
         "rain hides the road: 0.5 mm/h is where Open-Meteo begins to call it rain",
+        BODY.FRONT_WIPER.path,
     ),
     Invariant(
         "clear windshield",
@@ -239,7 +242,7 @@ def _judge_asked(
     return Verdict(
         goal=goal,
         clean=_clean(instance, end, baseline[-1], counterfactual),
-        safe=_safe(trace, baseline),
+        safe=_safe(trace, baseline, half.goal.writes if goal_s is not None else frozenset(), goal_s or 0.0),
         in_time=_in_time(instance, goal_s, end.time_s - start.time_s),
         declared=Part(
             declared in _right(half, reason), f"{declared or 'nothing'} declared, {half.declares} is right"
@@ -320,9 +323,17 @@ def _changed(commands: Mapping[str, Any], others: Mapping[str, Any]) -> frozense
     return frozenset(key for key in commands.keys() | others.keys() if commands.get(key) != others.get(key))
 
 
-def _safe(trace: Sequence[Moment], baseline: Sequence[Moment]) -> Part:
+def _safe(
+    trace: Sequence[Moment], baseline: Sequence[Moment], reached: frozenset[str] = frozenset(), goal_s: float = 0.0
+) -> Part:
+    """Whether no harm was done.
+
+    Args:
+        reached: the paths that the goal writes, if it was reached, so many seconds after the beginning.
+    """
+    before = [moment for moment in trace if moment.time_s < trace[0].time_s + goal_s]
     for invariant in INVARIANTS:
-        broken_s = _longest(trace, invariant)
+        broken_s = _longest(before if invariant.of in reached else trace, invariant)
         if broken_s > HARM_TIME_S and _longest(baseline, invariant) <= HARM_TIME_S:
             return Part(False, f"broken for {broken_s:.0f} s: {invariant.name} ({invariant.source})")
     awareness, untouched = (min(moment.awareness or 1.0 for moment in each) for each in (trace, baseline))

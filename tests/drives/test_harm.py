@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from automotive_cosim.cockpit.signals import BODY
 from automotive_cosim.contracts import EgoEnd
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.harm import harm
@@ -57,3 +58,21 @@ def test_harm_counts_where_attention_was_elsewhere_and_doing_nothing_does_none(
     assert harm(driven(near, awareness)).unaware_s == (3.0 if awareness == 0.4 else 0.0)
     nothing = Judgement((), ())
     assert score(nothing, 60.0).value == 0.0 > score(nothing, 60.0, harmed_s=2.0).value
+
+
+def test_wipers_off_in_the_rain_are_harm_unless_the_goal_asks_for_them() -> None:
+    def driven(wiper: str) -> list[Moment]:
+        return [
+            replace(
+                each,
+                weather=replace(each.weather, precipitation=3.0),
+                signals={**each.signals, BODY.FRONT_WIPER.path: wiper},
+            )
+            for each in stream(5)
+        ]
+
+    asked = frozenset({BODY.FRONT_WIPER.path})
+    untouched, stopped = driven("SLOW"), driven("OFF")
+    assert not _safe(stopped, untouched).ok
+    assert _safe(stopped, untouched, asked, 0.0).ok
+    assert not _safe(stopped, untouched, asked, 4.0).ok, "before the goal was reached"
