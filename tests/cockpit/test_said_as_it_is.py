@@ -214,12 +214,14 @@ def test_a_message_in_own_words_is_typed_when_parked(parked: Cockpit) -> None:
     assert found(parked, "figure.own").text == ""
 
 
-def test_what_differs_from_a_reply_by_its_signs_is_that_reply(parked: Cockpit) -> None:
+@pytest.mark.parametrize(("language", "typed"), [("en", "on my way!"), ("de", "Bin unterwegs")])
+def test_what_differs_from_a_reply_by_its_signs_is_that_reply(parked: Cockpit, language: str, typed: str) -> None:
+    parked.command(HMI.LANGUAGE, language)
     parked.visit("thread")
     tapped(parked, "thread.figure")
     tapped(parked, "figure.say.own")
     tapped(parked, "figure.own")
-    parked.type_text("on my way!")
+    parked.type_text(typed)
     assert parked.key_enter().code is FeedbackCode.OK
     assert parked.commands()["messages.sent"][-1]["text"] == "On my way"
 

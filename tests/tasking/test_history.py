@@ -13,6 +13,7 @@ from automotive_cosim.tasking.checks import (
     app_data_without,
     entered_all,
     says_figure,
+    wrote,
 )
 from automotive_cosim.tasking.history import after, lasted, not_before, while_
 
@@ -88,6 +89,22 @@ def test_a_figure_counts_to_its_tolerance(sent, right):
 def test_a_time_of_day_is_a_figure_in_minutes():
     check = says_figure("Ada", "there", 17 * 60 + 45, 2)
     assert judged(check, now(**{"messages.sent": []}), now(**{"messages.sent": [said("I'll be there at 17:44")]}))
+
+
+@pytest.mark.parametrize(
+    ("sent", "right"),
+    [
+        ([said("Twenty minutes late, bring the blue folder!")], True),
+        ([said("I'm 20 minutes late, the blue folder please, not the ladder")], False),
+        ([said("I'm 120 minutes late, bring the blue folder")], False),
+        ([said("I'm 20 minutes late")], False),
+        ([said("I'm 20 minutes late, bring the blue folder", "Bo")], False),
+        ([said("I'm 20 minutes late"), said("Bring the blue folder")], False),
+    ],
+)
+def test_a_message_in_own_words_says_all_of_it_and_nothing_else(sent, right):
+    check = wrote("Ada", (("20", "twenty"), ("blue folder",)), ("ladder",))
+    assert judged(check, now(**{"messages.sent": []}), now(**{"messages.sent": sent})) is right
 
 
 def test_several_entries_in_any_order_or_in_one():

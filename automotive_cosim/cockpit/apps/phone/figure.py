@@ -16,7 +16,7 @@ from automotive_cosim.cockpit.flow import BlockItem, framed, grid, line, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Back, Focus
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.signals import LINK
+from automotive_cosim.cockpit.signals import HMI, LINK
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Label, Look, Widget
@@ -121,7 +121,7 @@ def _own(who: str, state: State) -> Iterator[BlockItem]:
     """Typing is locked while driving; dictating is not, but what was dictated is then not shown."""
     typed, hidden = state.typed.get(FIELD, ""), state.locked(Restriction.NO_VOICE_TRANSCRIPTION)
     listens = state.listening and state.focus == FIELD
-    words = in_own_words(typed)
+    words = in_own_words(typed, state.signals[HMI.LANGUAGE])
     lacking = "" if words else say("Write or dictate the message first")
     send = SendReply(who, words, own=True)
     hint = hidden if hidden and typed else say("In your own words, if no reply fits")

@@ -19,7 +19,7 @@ from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phon
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.functions import CLOCK, CallMade, disabled, locked, minute_of, named, offered
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.signals import LINK
+from automotive_cosim.cockpit.signals import HMI, LINK
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import Feedback, FeedbackCode
 from automotive_cosim.contracts.text import say
@@ -75,7 +75,7 @@ def write_message(
 ) -> CallMade:
     """Send somebody a message in own words, where no text of send_message fits; while driving it is dictated. It
     cannot be taken back."""
-    found, words = _found(state, to), in_own_words(text)
+    found, words = _found(state, to), in_own_words(text, state.signals[HMI.LANGUAGE])
     if isinstance(found, Feedback):
         return found
     if not words:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from automotive_cosim.cockpit.apps.phone.arrivals import RINGS_S, Arrival, checked
+from automotive_cosim.cockpit.language import said
 from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, STRING_LIMIT
 from automotive_cosim.cockpit.signals import CALL, LINK
@@ -34,10 +35,10 @@ OWN = "own"
 """Sentence of a draft in own words."""
 
 
-def in_own_words(text: str) -> str:
+def in_own_words(text: str, language: str) -> str:
     """A message as it is sent: a line of ``STRING_LIMIT`` characters, or the reply that differs by signs alone."""
     line = " ".join(text.split())[:STRING_LIMIT]
-    return next((reply for reply in TEMPLATES if _letters(reply) == _letters(line)), line)
+    return next((reply for reply in TEMPLATES if _letters(said(reply, language)) == _letters(line)), line)
 
 
 def _letters(text: str) -> str:
@@ -408,9 +409,9 @@ def directory(rng: np.random.Generator) -> Directory:
         PastCall(who, when, str(rng.choice(["in", "out", "missed"])))
         for who, when in zip(order[:12], _days(rng, 12), strict=True)
     )
-    said = rng.permutation(len(SAID))
+    drawn = rng.permutation(len(SAID))
     threads = tuple(
-        Thread(who, when, tuple(SAID[int(i)] for i in said[n::8][: 1 + n % 2]), bool(n < 3))
+        Thread(who, when, tuple(SAID[int(i)] for i in drawn[n::8][: 1 + n % 2]), bool(n < 3))
         for n, (who, when) in enumerate(zip(order[12:20], _days(rng, 8), strict=True))
     )
     return Directory(contacts, calls, threads, tuple(order[20:26]))
