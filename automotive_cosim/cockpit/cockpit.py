@@ -12,7 +12,6 @@ determined by the calls: time comes only from ``sense``.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from copy import copy
 from dataclasses import replace
 from datetime import timedelta
 from typing import Any
@@ -151,7 +150,7 @@ class Cockpit(Touchscreen):
         twin = Cockpit.__new__(Cockpit)
         twin._state = self._state.copy()
         twin._tree = self._tree
-        twin._display = copy(self._display)
+        twin._display = Display(self._display.scale)  # most copies are never looked at, and a picture takes 6 MB
         return twin
 
     # --- the world ----------------------------------------------------------------------------------------

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image
 
 from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.drawing import pixels_of
@@ -17,15 +16,14 @@ from automotive_cosim.contracts import (
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """A widget tree and its picture, which is never modified."""
+    """A widget tree and its picture, which is never modified; the drawing library's own would take more than it."""
 
     screen: Screen
-    picture: Image.Image
     pixels: npt.NDArray[np.uint8]
 
 
 class Display:
-    """Keeps the last picture and the last list. Copies are independent: what they keep is never modified."""
+    """Keeps the last picture and the last list."""
 
     def __init__(self, scale: float) -> None:
         """Nothing is drawn yet; the picture has ``scale`` pixels per logical pixel."""
@@ -56,12 +54,12 @@ class Display:
         """Draws the frame, or only where it differs from the last one."""
         if self._frame is None:
             picture = render(screen, self._scale).image
-            return _Frame(screen, picture, pixels_of(picture))
-        picture, boxes = repaint(self._frame.screen, self._frame.picture, screen)
+            return _Frame(screen, pixels_of(picture))
+        picture, boxes = repaint(self._frame.screen, self._frame.pixels, screen)
         pixels = self._frame.pixels.copy()
         for box in boxes:
             edges = box.edges(self.scale)
             left, top, right, bottom = edges
             pixels[top:bottom, left:right] = pixels_of(picture.crop(edges))
         pixels.flags.writeable = False
-        return _Frame(screen, picture, pixels)
+        return _Frame(screen, pixels)

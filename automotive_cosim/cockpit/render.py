@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
 from PIL import Image
 
 from automotive_cosim.cockpit.camera import camera
@@ -74,8 +76,8 @@ def render(screen: Screen, scale: float = 1.0) -> Canvas:
     return canvas
 
 
-def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image.Image, tuple[Rect, ...]]:
-    """Draws the tree on a copy of the picture of another, only where they differ.
+def repaint(before: Screen, pixels: npt.NDArray[np.uint8], screen: Screen) -> tuple[Image.Image, tuple[Rect, ...]]:
+    """Draws the tree on the picture of another, (height, width, 3), RGB, only where they differ.
 
     Returns:
         The same picture as from ``render``, and the boxes that were redrawn.
@@ -84,12 +86,12 @@ def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image
     come = [widget for widget in screen.children if widget not in before.children]
     reaches = [(widget, _reach(widget, screen)) for widget in screen.children]
     boxes = _grown([_reach(widget, screen) for widget in (*gone, *come)], [reach for _, reach in reaches])
-    scale = picture.width / screen.rect.width
+    scale = pixels.shape[1] / screen.rect.width
     worth_it = WORTH_IT * screen.rect.width * screen.rect.height
     if before.night is not screen.night or sum(box.width * box.height for box in boxes) > worth_it:
         return render(screen, scale).image, (screen.rect,)
     palette = screen.palette
-    canvas = Canvas(picture.copy(), scale, screen.style, night=screen.night)
+    canvas = Canvas(Image.fromarray(pixels), scale, screen.style, night=screen.night)
     for box in boxes:
         canvas.box(box, palette.background)
         if box.overlaps(screen.dock):

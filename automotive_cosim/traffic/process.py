@@ -21,6 +21,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy.random  # noqa: F401, which numpy loads at its first use: in each copy, where it takes 3 MB
+
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.formats.scenario import Scenario

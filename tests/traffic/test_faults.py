@@ -249,6 +249,21 @@ def test_where_nothing_can_be_forked_it_says_what_to_use(grid: Scenario, monkeyp
         Forked(grid)
 
 
+def libraries(pid: int) -> set[str]:
+    return {line.split()[-1] for line in Path(f"/proc/{pid}/maps").read_text().splitlines() if ".so" in line}
+
+
+def test_a_copy_finds_all_loaded(grid: Scenario, hurried: EgoPlan) -> None:
+    """What a copy loads takes its time in every reset, and memory that it shares with none."""
+    before = children(os.getpid())
+    with closing(Forked(grid, seed=1)) as simulation:
+        (warm,) = set(children(os.getpid())) - set(before)
+        with closing(simulation.depart(hurried)) as traffic:
+            traffic.advance(5.0)
+            (copy,) = children(warm)
+            assert libraries(copy) <= libraries(warm)
+
+
 def test_a_process_holds_one_simulation_of_its_own(grid: Scenario, hurried: EgoPlan) -> None:
     simulation = InProcess(grid, seed=1)
     with pytest.raises(TrafficError, match=r"fork\.Forked"):
