@@ -65,7 +65,7 @@ CEILINGS = {
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
 
-DATA_LINES, WIDTH = 18_236, 130
+DATA_LINES, WIDTH = 18_237, 130
 """Lines of the tasks' files, with every phrasing, and characters of the longest."""
 
 

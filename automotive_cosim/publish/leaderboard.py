@@ -89,7 +89,7 @@ BoardTable = tuple[Table, BundleConditions, list[str]]
 
 
 @dataclass(frozen=True, slots=True)
-class Board:
+class BoardPage:
     """What a page of bundles shows."""
 
     tables: list[BoardTable]
@@ -173,7 +173,7 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
     return board(folder, out, workers=workers, mixed=mixed).left_out
 
 
-def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> Board:
+def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> BoardPage:
     """Checks every bundle and writes the page.
 
     Args:
@@ -206,7 +206,7 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
         )
         driven = [replace(each, suite=suite) for each in driven]
         entries = [replace(entry, conditions=replace(entry.conditions, suite=suite)) for entry in entries]
-    made = Board(tables(entries), lost_table(entries), drives_tables(driven), left_out)
+    made = BoardPage(tables(entries), lost_table(entries), drives_tables(driven), left_out)
     page = render(
         "publish/leaderboard.html",
         tables=made.tables,
