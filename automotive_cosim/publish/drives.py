@@ -20,7 +20,7 @@ PLANNED = ("family", "season", "scenario", "settings", "agent", "model", "condit
 """Fields of a row that the plan determines."""
 UNJUDGED = ("score", "value", "harm", "baseline_harm", "events", "acts", "trace_sha256")
 """Fields of a row that a drive without a judgement leaves at their defaults."""
-ENDS = frozenset({End.DRIVE_ENDED, End.MINUTES_OVER, End.OUT_OF_BUDGET, End.AGENT_FAILED})
+ENDS = frozenset({End.DRIVE_ENDED, End.MINUTES_OVER, End.OUT_OF_STEPS, End.OUT_OF_BUDGET, End.AGENT_FAILED})
 
 
 def drive_problems(folder: Path, row: DriveTrialRow, told: Json) -> Iterator[Problem]:
