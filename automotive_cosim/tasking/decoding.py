@@ -41,24 +41,31 @@ class Meanings(Protocol):
 
     def decode(self, value: Any, hint: Any) -> Any:
         """A value of a type, from what is written."""
+        ...
 
     def named(self, value: Any) -> Any:
         """What a name stands for; anything else is itself."""
+        ...
 
     def table(self, value: Any, base: Mapping[str, Any]) -> dict[str, Any]:
         """A table with what it is like, over what it adds to."""
+        ...
 
     def parameter(self, name: str, column: str, hint: Any) -> Param:
         """A placeholder, with what its values mean here."""
+        ...
 
     def text(self, told: str, name: str) -> Param:
         """A text with what a drawn value means in it."""
+        ...
 
     def topic(self, name: str) -> Any:
         """One of the topics of the half."""
+        ...
 
     def company(self) -> Param:
         """One to four adults, drawn."""
+        ...
 
 
 Decoder: TypeAlias = Callable[[Meanings, Any], Any]

@@ -120,11 +120,11 @@ def test_versions_stand_apart_unless_told_and_then_the_page_says_so(shelf, tmp_p
 @pytest.mark.parametrize("bundle", sorted(BUNDLES.iterdir()), ids=lambda path: path.stem)
 def test_what_is_on_the_board_is_driven_again_to_the_same_end(bundle):
     """Drawn episodes of every bundle in the repository, models' with the answers on record: prompts, thoughts, acts
-    and verdicts are those that it has."""
+    and verdicts are those that it has. By functions it is asked otherwise: there are more of them today."""
     checked = verify(bundle, replays=REPLAYS, seed=1)
     assert not checked.problems
     if "controls" not in bundle.name and "drives" not in bundle.name:
-        assert f"  {REPLAYS} drives with the recorded questions and answers of a model" in checked.facts
+        assert "with the recorded questions and answers of a model" in "\n".join(checked.facts)
 
 
 def test_the_board_says_of_models_what_they_cost_and_what_went_wrong(shelf, packed):

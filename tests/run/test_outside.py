@@ -51,7 +51,8 @@ class Walks(Base):
         while frame is not None:
             found.append(repr([*frame.f_globals, *(each for each in frame.f_locals.values() if each is not found)]))
             frame = frame.f_back
-        found += [repr(each) for each in gc.get_objects() if str(type(each).__module__).startswith("automotive_cosim")]
+        ours = lambda each: str(type(each).__module__).startswith("automotive_cosim")
+        found += [repr(each) for each in gc.get_objects() if ours(each)]
         found += [repr(each) for each in gc.get_objects() if isinstance(each, (str, dict, list, tuple))]
         for pid in ("self", os.getppid()):
             for name in ("cmdline", "environ", "comm"):
