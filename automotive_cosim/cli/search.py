@@ -69,7 +69,7 @@ def search(
     from automotive_cosim.safety.due import DueScreen, with_times
     from automotive_cosim.safety.findings import as_json as findings_json
     from automotive_cosim.safety.hunt import blame, hunt, try_carefully
-    from automotive_cosim.safety.page import suite, write_findings
+    from automotive_cosim.safety.page import regression_plan, write_findings
     from automotive_cosim.safety.samplers import even_points, make_sampler
     from automotive_cosim.safety.space import read_space, space_file
     from automotive_cosim.safety.trying import check_space, trial_of, trying
@@ -178,7 +178,7 @@ def search(
         note()
         page = write_findings(folder, found, agent, model, about)
     if order.save is not None and (found.minimal or found.not_reduced):
-        write_whole(order.save, suite(found, agent, model))
+        write_whole(order.save, regression_plan(found, agent, model))
     elif order.save is not None:
         typer.echo(f"no failure was found, so nothing is saved in {order.save}", err=True)
     if as_json:

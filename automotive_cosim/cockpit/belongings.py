@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.apps.memo import Memos
 from automotive_cosim.cockpit.apps.phone.state import Contact, Directory, Phone, Thread
 from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.apps.trip import FROM_HERE, TripMeter, TripMeters
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.errors import UnknownNameError, UserError

@@ -33,7 +33,7 @@ from automotive_cosim.cockpit.make import HOME, Make
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.missing_parts import Lacking
 from automotive_cosim.cockpit.occupants import Occupant, take_seats
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.sensing import put_back, readings, sense

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.signals import ADAS
 from automotive_cosim.cockpit.state import Command, CommandRecord, State
 from automotive_cosim.cockpit.theme import Icon

@@ -65,7 +65,7 @@ DIVIDED = (
 class BundleConditions:
     """The conditions that contestants in one table share."""
 
-    suite: str
+    version: str
     tasks: str
     scenarios: str
     seeds: str
@@ -107,7 +107,7 @@ class BoardEntry:
     bundle: str
     sha256: str
     version: str
-    """Of the suite that ran it."""
+    """Of the package that ran it."""
     contestant: Contestant
     conditions: BundleConditions
     rates: tuple[Rate, ...]
@@ -135,8 +135,8 @@ class DrivenEntry:
     bundle: str
     sha256: str
     version: str
-    """Of the suite that ran them."""
-    suite: str
+    """Of the package that ran them."""
+    minor: str
     """Its minor version, within which drives can be compared."""
     contestant: Contestant
     rows: tuple[DriveTrialRow, ...]
@@ -177,7 +177,7 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
     """Checks every bundle and writes the page.
 
     Args:
-        mixed: put evaluations of several versions of the suite into one table, and say so.
+        mixed: put evaluations of several versions of the package into one table, and say so.
 
     Raises UserError: there is no bundle without a problem, or the page cannot be written."""
     if not folder.is_dir():
@@ -201,11 +201,11 @@ def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> 
     if not entries and not driven:
         raise UserError(f"{folder} has no valid bundle{''.join(f'; {each}' for each in left_out[:3])}")
     if mixed:
-        suite = ", ".join(
-            sorted({*(entry.conditions.suite for entry in entries), *(each.suite for each in driven)})
+        version = ", ".join(
+            sorted({*(entry.conditions.version for entry in entries), *(each.minor for each in driven)})
         )
-        driven = [replace(each, suite=suite) for each in driven]
-        entries = [replace(entry, conditions=replace(entry.conditions, suite=suite)) for entry in entries]
+        driven = [replace(each, minor=version) for each in driven]
+        entries = [replace(entry, conditions=replace(entry.conditions, version=version)) for entry in entries]
     made = BoardPage(tables(entries), lost_table(entries), drives_tables(driven), left_out)
     page = render(
         "publish/leaderboard.html",
@@ -291,20 +291,20 @@ def read_driven(bundle: Path) -> list[DrivenEntry]:
 
 
 def drives_tables(entries: Sequence[DrivenEntry]) -> list[Table]:
-    """A table for each set of drives and version of the suite, the largest first."""
+    """A table for each set of drives and version of the package, the largest first."""
     alike: dict[tuple[str, str], list[DrivenEntry]] = defaultdict(list)
     for entry in entries:
-        alike[entry.suite, entry.drives].append(entry)
+        alike[entry.minor, entry.drives].append(entry)
     ordered = sorted(alike.items(), key=lambda each: (-len(each[1]), each[0]))
     return [
         Table(
             f"drives_{number}",
-            f"Drives: {drives}, version {suite}",
+            f"Drives: {drives}, version {version}",
             DRIVE_COLUMNS,
             tuple(entry.row for entry in sorted(found, key=lambda entry: -entry.value)),
             heads=3 + len(TABLE),
         )
-        for number, ((suite, drives), found) in enumerate(ordered, start=1)
+        for number, ((version, drives), found) in enumerate(ordered, start=1)
     ]
 
 
@@ -351,12 +351,12 @@ def lost_table(entries: Sequence[BoardEntry]) -> Table:
     return Table("lost", "What went wrong", LOST_COLUMNS, rows, note, heads=len(LOST_COLUMNS))
 
 
-def _conditions(suite: str, plan: Json, rows: Sequence[EpisodeRow]) -> BundleConditions:
+def _conditions(version: str, plan: Json, rows: Sequence[EpisodeRow]) -> BundleConditions:
     instances = sorted({(row.task, row.half, row.scenario, row.seed, row.repeat) for row in rows})
     digest = hashlib.sha256(repr(instances).encode()).hexdigest()[:8]
     limits = plan["limits"]
     return BundleConditions(
-        suite=suite,
+        version=version,
         tasks=counted(len({row.task for row in rows}), "task"),
         scenarios=", ".join(plan["scenarios"]) or "each task's own",
         seeds=", ".join(map(str, sorted({row.seed for row in rows}))),

@@ -52,7 +52,7 @@ PLAN_ON_TRUST = frozenset({"models", "everywhere", "limits", "spare_traffic", "r
 """Fields of a plan that may not show in its episodes: models that no agent uses, limits that none reached, another
 phrasing of repeats where there is one run of each, ..."""
 STARTS_ON_TRUST = frozenset({"started", "platform", "git", "versions", "own_code", "own_scenarios"})
-"""Fields of a start that nothing else records, except the version of the suite."""
+"""Fields of a start that nothing else records, except the version of the package."""
 UNKNOWN = (
     "whether the named agent and model gave these actions: a drive shows what was done, but not by whom",
     "whether these are the first attempts: evaluations with worse results may have been discarded",

@@ -105,7 +105,7 @@ class SuccessChange:
     problems: tuple[str, ...] = ()
     """Why it is not known what was planned."""
     versions: tuple[str, str] = ("", "")
-    """Of the suite, before and after."""
+    """Of the package, before and after."""
 
     def count(self, kind: str) -> int:
         """The cases of one kind."""
@@ -163,7 +163,7 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
     Args:
         before: the earlier evaluation's folder.
         after: the later one's.
-        mixed: compare even if two minor versions of the suite ran them.
+        mixed: compare even if two minor versions of the package ran them.
 
     Raises UserError: one folder is not an evaluation's, two minor versions ran them, or no contestant is in
     both."""
@@ -390,7 +390,7 @@ def _before_and_after(each: SuccessChange) -> str:
 
 
 def mixed_versions(found: Sequence[SuccessChange]) -> str:
-    """A sentence if two minor versions of the suite are compared; else empty."""
+    """A sentence if two minor versions of the package are compared; else empty."""
     old, new = found[0].versions
     if minor(old) == minor(new):
         return ""

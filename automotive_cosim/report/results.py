@@ -79,7 +79,7 @@ class Results:
 
     @property
     def version(self) -> str:
-        """The version of the suite that ran it."""
+        """The version of the package that ran it."""
         return ran_with(self.manifest)
 
     @property

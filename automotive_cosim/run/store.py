@@ -30,7 +30,7 @@ from automotive_cosim.formats import files
 from automotive_cosim.formats.layout import DUE, PICTURES, TRACES
 from automotive_cosim.formats.writing import add_line, growing, locked, make_folder, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
-from automotive_cosim.run.versions import STAMPED, SUITE, installed
+from automotive_cosim.run.versions import PACKAGE, STAMPED, installed
 from automotive_cosim.scenarios.opening import own_files
 
 
@@ -281,7 +281,7 @@ def megabytes(folder: Path) -> float:
 def _writer(folder: Path) -> str:
     """The version that a folder was begun with, in brackets; empty if that is not known."""
     try:
-        return f" ({SUITE} {files.read_json(folder / 'manifest.json')['starts'][0]['versions'][SUITE]})"
+        return f" ({PACKAGE} {files.read_json(folder / 'manifest.json')['starts'][0]['versions'][PACKAGE]})"
     except (OSError, ValueError, LookupError, TypeError):
         return ""
 

@@ -8,27 +8,27 @@ from importlib.metadata import PackageNotFoundError, version
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 
-SUITE = "automotive-cosim"
-STAMPED = (SUITE, "libsumo", "gymnasium", "numpy", "pillow")
+PACKAGE = "automotive-cosim"
+STAMPED = (PACKAGE, "libsumo", "gymnasium", "numpy", "pillow")
 """Distributions on which the result of a trial may depend."""
 
 
 def installed(names: Iterable[str]) -> dict[str, str]:
-    """The versions of distributions by name, ``not installed`` for those that are missing; the suite's own is that
-    of the running code, even if an editable install recorded another one."""
+    """The versions of distributions by name, ``not installed`` for those that are missing; this package's own is
+    that of the running code, even if an editable install recorded another one."""
     found: dict[str, str] = {}
     for name in names:
         try:
-            found[name] = __version__ if name == SUITE else version(name)
+            found[name] = __version__ if name == PACKAGE else version(name)
         except PackageNotFoundError:
             found[name] = "not installed"
     return found
 
 
 def ran_with(manifest: Json) -> str:
-    """The version of the suite that ran an evaluation or one trial; ``unknown`` if its manifest does not say."""
+    """The version of the package that ran an evaluation or one trial; ``unknown`` if its manifest does not say."""
     try:
-        return str((manifest["starts"] or [manifest])[0]["versions"][SUITE])
+        return str((manifest["starts"] or [manifest])[0]["versions"][PACKAGE])
     except (LookupError, TypeError):
         return "unknown"
 

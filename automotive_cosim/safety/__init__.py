@@ -8,5 +8,5 @@ hunt       tries, repeats failures and reduces them
 findings   what a search has found: rates, bounds, coverage, failures in words
 forecast   what a search will take before it runs
 trying     runs points as trials of an evaluation that grows
-page       report and regression suite
+page       report and regression plan
 """

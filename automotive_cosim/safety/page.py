@@ -1,4 +1,4 @@
-"""What a search leaves in its folder: rows, failures as plans, and a page; and the regression suite."""
+"""What a search leaves in its folder: rows, failures as plans, and a page; and the regression plan."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ def write_findings(folder: Path, found: Hunt, agent: str, model: str, about: Jso
         write_whole(folder / ROWS, "".join(f"{line}\n" for line in lines))
         write_whole(folder / FINDINGS, json.dumps(as_json(found), indent=1, ensure_ascii=False) + "\n")
         for number, each in enumerate(found.minimal, 1):
-            write_whole(make_folder(folder, PLANS) / f"{number:02d}.toml", suite(found, agent, model, [each]))
+            write_whole(
+                make_folder(folder, PLANS) / f"{number:02d}.toml", regression_plan(found, agent, model, [each])
+            )
         page = folder / PAGE
         write_whole(page, _page(folder, found, agent, model, about))
     except OSError as error:
@@ -52,7 +54,7 @@ def row_of(each: Tried) -> Json:
     }
 
 
-def suite(found: Hunt, agent: str, model: str, failures: list[MinimalFailure] | None = None) -> str:
+def regression_plan(found: Hunt, agent: str, model: str, failures: list[MinimalFailure] | None = None) -> str:
     """A plan with each minimal failure and its passing neighbour, for ``eval --plan`` and ``compare``.
 
     Args:

@@ -31,7 +31,7 @@ class Pair:
     """Two runs of one study."""
 
     name: str
-    """Both folders; of two suites, what the study is called in each."""
+    """Both folders; of studies on several networks, what the study is called in each."""
     first: AnyStudy
     second: AnyStudy
 

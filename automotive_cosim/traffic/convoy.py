@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from automotive_cosim.errors import TrafficError
 from automotive_cosim.traffic.base import Advance, EgoPlan, Event
-from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.ego_loop import EgoLoop
 from automotive_cosim.traffic.instant import Instant
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.world import World
@@ -19,11 +19,11 @@ class Convoy:
     def __init__(self, world: World) -> None:
         """Begins without a car."""
         self._world = world
-        self._drives: dict[str, EgoDrive] = {}
+        self._drives: dict[str, EgoLoop] = {}
         self.chooses: Callable[[str], EgoPlan | None] | None = None
         """Whether a vehicle that sets out gets a cockpit, and how its driver reacts then; None equips none."""
 
-    def drive(self, car: str = EGO) -> EgoDrive:
+    def drive(self, car: str = EGO) -> EgoLoop:
         """The drive of a car.
 
         Raises:
@@ -34,11 +34,11 @@ class Convoy:
         return self._drives[car]
 
     @property
-    def first(self) -> EgoDrive | None:
+    def first(self) -> EgoLoop | None:
         """The drive of the car that departed first; None before."""
         return self._drives.get(EGO)
 
-    def depart(self, plan: EgoPlan, beat: Callable[[], None]) -> EgoDrive:
+    def depart(self, plan: EgoPlan, beat: Callable[[], None]) -> EgoLoop:
         """See ``World.depart``: the first car, with whose departure its clock and its weather begin."""
         drive = self._drives[EGO] = self._world.depart(plan, beat)
         return drive
@@ -47,7 +47,7 @@ class Convoy:
         """See ``World.send``."""
         self._world.send(car, plan)
 
-    def equip(self, car: str, plan: EgoPlan) -> EgoDrive:
+    def equip(self, car: str, plan: EgoPlan) -> EgoLoop:
         """See ``World.equip``."""
         drive = self._drives[car] = self._world.equip(car, plan)
         return drive
@@ -97,7 +97,7 @@ class Convoy:
         made = {car: Advance(tuple(instant.state for instant in states[car]), tuple(events[car])) for car in states}
         return made, entered
 
-    def _chosen(self) -> dict[str, EgoDrive]:
+    def _chosen(self) -> dict[str, EgoLoop]:
         """The drives of the cars that have set out in the last step and get a cockpit."""
         if self.chooses is None:
             return {}

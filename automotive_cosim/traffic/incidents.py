@@ -15,8 +15,8 @@ from automotive_cosim.formats.incidents import EgoIncident, Incident, ScriptedVe
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.detours import Detours
+from automotive_cosim.traffic.incident_tools import IncidentTools
 from automotive_cosim.traffic.sensing import Sensor
-from automotive_cosim.traffic.stage import IncidentStage
 from automotive_cosim.traffic.staged import StagedIncident
 from automotive_cosim.traffic.staging import staged
 
@@ -25,7 +25,7 @@ from automotive_cosim.traffic.staging import staged
 class _Entry:
     incident: Incident
     staged: StagedIncident
-    stage: IncidentStage
+    tools: IncidentTools
     """Around the car that it is staged for."""
     zero_s: float | None = None
     """When that car departed, from where its times count; None for the clock that all share."""
@@ -36,15 +36,15 @@ class _Entry:
 class Incidents:
     """The incidents of one simulation."""
 
-    def __init__(self, stage: IncidentStage, scenario: Scenario) -> None:
+    def __init__(self, tools: IncidentTools, scenario: Scenario) -> None:
         """Reads the scenario's incidents.
 
         Raises:
             ScenarioError: one of them does not fit the network.
         """
-        self._stage = stage
-        self._entries = [_Entry(incident, staged(stage, incident), stage) for incident in scenario.incidents]
-        self._others: list[IncidentStage] = []
+        self._tools = tools
+        self._entries = [_Entry(incident, staged(tools, incident), tools) for incident in scenario.incidents]
+        self._others: list[IncidentTools] = []
         """Around the other equipped cars."""
         self._zero_s = scenario.sumo.warm_up_s
         self._start = scenario.start
@@ -53,17 +53,17 @@ class Incidents:
     @property
     def are_left(self) -> bool:
         """Whether any incident is pending or active."""
-        return self._stage.follows_the_clock or any(not entry.is_over for entry in self._entries)
+        return self._tools.follows_the_clock or any(not entry.is_over for entry in self._entries)
 
     @property
     def detours(self) -> Detours:
         """The other vehicles' ways round what is closed."""
-        return self._stage.detours
+        return self._tools.detours
 
     @property
     def slowed(self) -> dict[str, float]:
         """See ``Signs.slowed``."""
-        return self._stage.signs.slowed
+        return self._tools.signs.slowed
 
     def move(self, start: datetime) -> None:
         """Takes the clock of another place."""
@@ -72,9 +72,9 @@ class Incidents:
     def expect(self, plan: EgoPlan, now_s: float) -> None:
         """Opens and closes roads and turns for the clock of an ego that is about to depart, whose route depends on
         them; without any, its clock counts once it is on the road."""
-        if self._stage.closures.follow_the_clock:
+        if self._tools.closures.follow_the_clock:
             self._zero_s, self._start = now_s, plan.start or self._start
-            self._stage.follow(self._local_time(now_s))
+            self._tools.follow(self._local_time(now_s))
 
     def set_off(self, plan: EgoPlan, sensor: Sensor, now_s: float) -> None:
         """Takes note of the ego's departure: from now on its trip, its route and its clock count.
@@ -82,13 +82,13 @@ class Incidents:
         Raises:
             ScenarioError: an incident of the plan does not fit the network.
         """
-        self._stage.sensor = sensor
+        self._tools.sensor = sensor
         for incident in plan.incidents:
             self.add(incident)
         self._zero_s = now_s
         self._start = plan.start or self._start
         self._trip = plan.trip.name
-        self._stage.follow(self._local_time(now_s))
+        self._tools.follow(self._local_time(now_s))
         for entry in self._entries:  # where they are is told with the ego's own place
             if isinstance(entry.incident, ScriptedVehicle) and not entry.has_begun and self._is_due(entry, 0.0):
                 entry.has_begun = True
@@ -100,7 +100,7 @@ class Incidents:
         Raises:
             ScenarioError: it does not fit the network.
         """
-        self._entries.append(_Entry(incident, staged(self._stage, incident), self._stage))
+        self._entries.append(_Entry(incident, staged(self._tools, incident), self._tools))
 
     def join(self, plan: EgoPlan, car: str, sensor: Sensor, now_s: float) -> None:
         """Takes note of another equipped car that has departed: what its plan stages is staged around it. The clock
@@ -109,9 +109,9 @@ class Incidents:
         Raises:
             ScenarioError: an incident of the plan does not fit the network.
         """
-        stage = self._stage.around(car, sensor)
-        self._others.append(stage)
-        self._entries += [_Entry(each, staged(stage, each), stage, now_s) for each in plan.incidents]
+        tools = self._tools.around(car, sensor)
+        self._others.append(tools)
+        self._entries += [_Entry(each, staged(tools, each), tools, now_s) for each in plan.incidents]
 
     def tick(self, now_s: float) -> tuple[Event, ...]:
         """Begins and ends the incidents that are due; called once per second of the simulation."""
@@ -119,11 +119,11 @@ class Incidents:
         told: list[str] = []
         going_on = [entry for entry in self._entries if not entry.is_over]
         if any(isinstance(entry.incident, EgoIncident) for entry in going_on):
-            there = frozenset(self._stage.sumo.vehicle_ids())
+            there = frozenset(self._tools.sumo.vehicle_ids())
             going_on = [entry for entry in going_on if not self._has_left(entry, there)]
         for entry in going_on:
             told += self._proceed(entry, now_s - self._begun_s(entry), local_time)
-        self._stage.follow(local_time)
+        self._tools.follow(local_time)
         return tuple(Event(now_s, "incident", text) for text in told if text)
 
     def reported(self, slow: Mapping[str, float]) -> tuple[RoadIncident, ...]:
@@ -148,8 +148,8 @@ class Incidents:
     def _has_left(self, entry: _Entry, there: frozenset[str]) -> bool:
         """Whether the car that it goes by has arrived or was removed, while others drive on: nothing happens around
         it any more."""
-        stage = entry.stage
-        return isinstance(entry.incident, EgoIncident) and stage.sensor is not None and stage.ego_id not in there
+        tools = entry.tools
+        return isinstance(entry.incident, EgoIncident) and tools.sensor is not None and tools.ego_id not in there
 
     def _local_time(self, now_s: float) -> datetime:
         """The local time: the scenario's in the warm-up, the ego's once it is driving."""
@@ -158,11 +158,11 @@ class Incidents:
 
     def take_changes(self) -> bool:
         """Whether signs or the ego's route have changed since the last call."""
-        stages = self._stage, *self._others
-        changed = self._stage.signs.changed or any(stage.route_changed for stage in stages)
-        self._stage.signs.changed = False
-        for stage in stages:
-            stage.route_changed = False
+        every = self._tools, *self._others
+        changed = self._tools.signs.changed or any(tools.route_changed for tools in every)
+        self._tools.signs.changed = False
+        for tools in every:
+            tools.route_changed = False
         return changed
 
     def _proceed(self, entry: _Entry, since_s: float, local_time: datetime) -> list[str]:
@@ -179,12 +179,12 @@ class Incidents:
         return told
 
     def _is_due(self, entry: _Entry, since_s: float) -> bool:
-        incident, sensor = entry.incident, entry.stage.sensor
+        incident, sensor = entry.incident, entry.tools.sensor
         if not self._concerns(incident) or not incident.from_s <= since_s < incident.to_s:
             return False
         return not isinstance(incident, EgoIncident) or (sensor is not None and sensor.position_m >= incident.at_m)
 
     def _concerns(self, incident: Incident) -> bool:
-        if isinstance(incident, EgoIncident) and self._stage.sensor is None:
+        if isinstance(incident, EgoIncident) and self._tools.sensor is None:
             return False
         return not incident.trip or incident.trip == self._trip

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.formats import incidents
+from automotive_cosim.traffic.incident_tools import CAR_TYPE, IncidentTools
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident
 from automotive_cosim.traffic.sumo import ANY_LANE_CHANGE, HAZARD_SIGNAL, WAYMAKING
 
@@ -55,15 +55,15 @@ CUT_OUT_S = 10.0
 class StagedEmergency(StagedIncident):
     """An ambulance, or a van, on the route behind the ego."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
-        self._stage, self._incident = stage, incident
+    def __init__(self, tools: IncidentTools, incident: incidents.EmergencyVehicle) -> None:
+        self._tools, self._incident = tools, incident
         self._car = ""
         self._was_there = False
         self._made_way: set[str] = set()
 
     def tick(self, local_time: datetime) -> str:
         """Waits until the ego has come far enough; then lets drivers be who they were once it has passed them."""
-        stage, sensor = self._stage, self._stage.sensor
+        tools, sensor = self._tools, self._tools.sensor
         if self._car:
             if self._incident.blue_light:
                 self._give_back()
@@ -72,10 +72,10 @@ class StagedEmergency(StagedIncident):
             return ""
         index, on_edge_m = sensor.route.edge_at(sensor.position_m - self._incident.behind_m)
         what = "ambulance" if self._incident.blue_light else "van"
-        kind = stage.kind(what)
-        types = stage.sumo.type
+        kind = tools.kind(what)
+        types = tools.sumo.type
         if not sensor.knows_emergency:
-            stage.drivers.clear()
+            tools.drivers.clear()
         if self._incident.blue_light:
             types.setVehicleClass(kind, "emergency")
             types.setShapeClass(kind, "emergency")
@@ -86,18 +86,18 @@ class StagedEmergency(StagedIncident):
         types.setSpeedFactor(kind, self._incident.speed_ratio)
         types.setSpeedDeviation(kind, 0.0)
         types.setParameter(kind, "has.rerouting.device", "false")
-        self._car = stage.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
+        self._car = tools.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
         return ""
 
     def _give_back(self) -> None:
-        sumo, drivers = self._stage.sumo, self._stage.drivers
+        sumo, drivers = self._tools.sumo, self._tools.drivers
         running = sumo.vehicle_ids()
         is_there = self._car in running
         if self._was_there and not is_there and not self._made_way:
             return
         self._was_there = self._was_there or is_there
         for each in running:
-            if each == self._stage.ego_id or each == self._car:
+            if each == self._tools.ego_id or each == self._car:
                 continue
             if each not in drivers:
                 drivers[each] = sumo.manner(each)
@@ -114,8 +114,8 @@ class StagedEmergency(StagedIncident):
 class StagedBraking(StagedIncident):
     """The vehicle ahead brakes."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.BrakingLeader) -> None:
-        self._stage, self._incident = stage, incident
+    def __init__(self, tools: IncidentTools, incident: incidents.BrakingLeader) -> None:
+        self._tools, self._incident = tools, incident
         self._has_called = False
         self._braking = ""
         self._own: tuple[float, float] | None = None
@@ -130,19 +130,19 @@ class StagedBraking(StagedIncident):
             if self._left_s <= 0:
                 self._release()
             return ""
-        stage, incident = self._stage, self._incident
-        if stage.sumo.speed(stage.ego_id) < incident.from_kmh / KMH_PER_MPS:
+        tools, incident = self._tools, self._incident
+        if tools.sumo.speed(tools.ego_id) < incident.from_kmh / KMH_PER_MPS:
             return ""
-        found = stage.sumo.leader(stage.ego_id, incident.within_m)
+        found = tools.sumo.leader(tools.ego_id, incident.within_m)
         if found and found[0] and found[1] <= incident.within_m:
             return self._brake(found[0]) if found[1] >= incident.beyond_m else ""
         if not self._has_called:
             self._has_called = True
-            _call(stage, incident.ahead_m)
+            _call(tools, incident.ahead_m)
         return ""
 
     def _brake(self, vehicle: str) -> str:
-        sumo, incident = self._stage.sumo, self._incident
+        sumo, incident = self._tools.sumo, self._incident
         to_mps = incident.to_kmh / KMH_PER_MPS
         self._braking = vehicle
         if incident.keeps_lane:
@@ -163,26 +163,26 @@ class StagedBraking(StagedIncident):
         return ""
 
     def _release(self) -> None:
-        with suppress(*self._stage.sumo.refusals):  # it may have left
-            self._stage.sumo.vehicle.setSpeed(self._braking, -1.0)
+        with suppress(*self._tools.sumo.refusals):  # it may have left
+            self._tools.sumo.vehicle.setSpeed(self._braking, -1.0)
             if self._own is not None:
-                self._stage.sumo.vehicle.setDecel(self._braking, self._own[0])
-                self._stage.sumo.set_speed_factor(self._braking, self._own[1])
+                self._tools.sumo.vehicle.setDecel(self._braking, self._own[0])
+                self._tools.sumo.set_speed_factor(self._braking, self._own[1])
             if self._incident.keeps_lane:
-                self._stage.sumo.vehicle.setLaneChangeMode(self._braking, ANY_LANE_CHANGE)
+                self._tools.sumo.vehicle.setLaneChangeMode(self._braking, ANY_LANE_CHANGE)
         self._braking, self._left_s = "", -1.0
 
 
-def _call(stage: IncidentStage, ahead_m: float) -> None:
+def _call(tools: IncidentTools, ahead_m: float) -> None:
     """A car pulls out in front of the ego, as fast as the ego."""
-    sensor, ego = stage.sensor, stage.ego_id
+    sensor, ego = tools.sensor, tools.ego_id
     assert sensor is not None
     here, _ = sensor.route.edge_at(sensor.position_m)
     index, on_edge_m = sensor.route.edge_at(sensor.position_m + ahead_m + CAR_SPACE_M)
-    lane = stage.sumo.lane_of(ego) if index == here else ""
-    fastest_mps = stage.sumo.type.getMaxSpeed(CAR_TYPE)  # less in fog, which the ego may take no notice of
-    speed = f"{min(stage.sumo.speed(ego), fastest_mps):.2f}"
-    stage.car("leader", sensor.route.edge_ids[index:], lane, on_edge_m, speed)
+    lane = tools.sumo.lane_of(ego) if index == here else ""
+    fastest_mps = tools.sumo.type.getMaxSpeed(CAR_TYPE)  # less in fog, which the ego may take no notice of
+    speed = f"{min(tools.sumo.speed(ego), fastest_mps):.2f}"
+    tools.car("leader", sensor.route.edge_ids[index:], lane, on_edge_m, speed)
 
 
 class _Beside(NamedTuple):
@@ -202,13 +202,13 @@ class _Beside(NamedTuple):
         return self.all_beside[0]
 
 
-def _beside(stage: IncidentStage, ahead_m: float) -> _Beside | None:
+def _beside(tools: IncidentTools, ahead_m: float) -> _Beside | None:
     """Where the ego is; None beside no other lane, or with less than that way left on the edge."""
-    sensor, lane = stage.sensor, stage.sumo.lane_of(stage.ego_id)
+    sensor, lane = tools.sensor, tools.sumo.lane_of(tools.ego_id)
     assert sensor is not None
     index, on_edge_m = sensor.route.edge_at(sensor.position_m)
     way = sensor.route.edge_ids[index:]
-    edge = stage.network.edges.get(way[0])
+    edge = tools.network.edges.get(way[0])
     if edge is None or lane not in edge.lane_ids or on_edge_m + ahead_m > edge.length_m:
         return None
     place = edge.lane_ids.index(lane)
@@ -216,26 +216,26 @@ def _beside(stage: IncidentStage, ahead_m: float) -> _Beside | None:
     return _Beside(edge, way, on_edge_m, lane, others) if others else None
 
 
-def _ahead_m(stage: IncidentStage, vehicle: str, here: _Beside) -> float:
+def _ahead_m(tools: IncidentTools, vehicle: str, here: _Beside) -> float:
     """How far a vehicle's front is ahead of the ego's; far away if it is on another edge."""
-    if stage.sumo.edge_of(vehicle) != here.edge.edge_id:
+    if tools.sumo.edge_of(vehicle) != here.edge.edge_id:
         return here.edge.length_m
-    return float(stage.sumo.vehicle.getLanePosition(vehicle)) - here.at_m
+    return float(tools.sumo.vehicle.getLanePosition(vehicle)) - here.at_m
 
 
-def _move_over(stage: IncidentStage, vehicle: str, lane: str, for_s: float) -> None:
+def _move_over(tools: IncidentTools, vehicle: str, lane: str, for_s: float) -> None:
     """A vehicle changes its lane at once, whoever is there."""
-    stage.sumo.vehicle.setLaneChangeMode(vehicle, NO_LANE_CHANGE)
-    stage.sumo.vehicle.changeLane(vehicle, int(lane.rpartition("_")[2]), for_s)
+    tools.sumo.vehicle.setLaneChangeMode(vehicle, NO_LANE_CHANGE)
+    tools.sumo.vehicle.changeLane(vehicle, int(lane.rpartition("_")[2]), for_s)
 
 
 class _KeptInLane:
     """Keeps a driver in a lane for a while, as the ego: SUMO's drivers swerve within a step, where people look
     first."""
 
-    def __init__(self, stage: IncidentStage, for_s: float, vehicle: str = "", mode: int = WHEN_ASKED) -> None:
-        self._stage, self._left_s, self._vehicle = stage, for_s, vehicle or stage.ego_id
-        stage.sumo.vehicle.setLaneChangeMode(self._vehicle, mode)
+    def __init__(self, tools: IncidentTools, for_s: float, vehicle: str = "", mode: int = WHEN_ASKED) -> None:
+        self._tools, self._left_s, self._vehicle = tools, for_s, vehicle or tools.ego_id
+        tools.sumo.vehicle.setLaneChangeMode(self._vehicle, mode)
 
     def tick(self) -> None:
         """A second has passed."""
@@ -248,21 +248,21 @@ class _KeptInLane:
         """Lets them change lanes again; may be called again."""
         if self._left_s > 0:
             self._left_s = 0.0
-            with suppress(*self._stage.sumo.refusals):  # they may have left
-                self._stage.sumo.vehicle.setLaneChangeMode(self._vehicle, ANY_LANE_CHANGE)
+            with suppress(*self._tools.sumo.refusals):  # they may have left
+                self._tools.sumo.vehicle.setLaneChangeMode(self._vehicle, ANY_LANE_CHANGE)
 
 
 class StagedCutIn(StagedIncident):
     """A vehicle beside the ego, which keeps its distance until it moves over."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.CutIn) -> None:
-        self._stage, self._incident = stage, incident
+    def __init__(self, tools: IncidentTools, incident: incidents.CutIn) -> None:
+        self._tools, self._incident = tools, incident
         self._car = ""
         self._left_s: float | None = None
         self._kept: _KeptInLane | None = None
 
     def tick(self, local_time: datetime) -> str:
-        stage, incident = self._stage, self._incident
+        tools, incident = self._tools, self._incident
         if self._left_s is not None:
             if self._left_s > 1.0:
                 self._left_s -= 1.0
@@ -271,27 +271,27 @@ class StagedCutIn(StagedIncident):
             if self._kept is not None:
                 self._kept.tick()
             return ""
-        mps, slower_mps = stage.sumo.speed(stage.ego_id), incident.slower_kmh / KMH_PER_MPS
-        found = _beside(stage, incident.gap_m + CUT_ROOM_M)
+        mps, slower_mps = tools.sumo.speed(tools.ego_id), incident.slower_kmh / KMH_PER_MPS
+        found = _beside(tools, incident.gap_m + CUT_ROOM_M)
         if found is None or mps < incident.from_kmh / KMH_PER_MPS:
             return ""
         if not self._car:
             place_m = found.at_m + incident.gap_m + CAR_SPACE_M
-            self._car = stage.car("cut_in", found.way, found.beside, place_m, f"{mps:.2f}")
+            self._car = tools.car("cut_in", found.way, found.beside, place_m, f"{mps:.2f}")
             return ""
-        if self._car not in stage.sumo.vehicle_ids():
+        if self._car not in tools.sumo.vehicle_ids():
             return ""
-        gap_m = _ahead_m(stage, self._car, found) - CAR_M
-        is_beside = stage.sumo.lane_of(self._car) in found.all_beside
+        gap_m = _ahead_m(tools, self._car, found) - CAR_M
+        is_beside = tools.sumo.lane_of(self._car) in found.all_beside
         if not is_beside or not 0 < gap_m <= incident.gap_m + mps * NEARLY_S:
-            with suppress(*stage.sumo.refusals):
-                stage.sumo.vehicle.setSpeed(self._car, max(CREEP_MPS, mps + (incident.gap_m - gap_m) * NEARS_PER_S))
+            with suppress(*tools.sumo.refusals):
+                tools.sumo.vehicle.setSpeed(self._car, max(CREEP_MPS, mps + (incident.gap_m - gap_m) * NEARS_PER_S))
             return ""
-        with suppress(*stage.sumo.refusals):  # the lane may have ended by then
-            stage.sumo.vehicle.setSpeed(self._car, max(mps - slower_mps, CREEP_MPS))
-            _move_over(stage, self._car, found.lane, incident.hold_s)
+        with suppress(*tools.sumo.refusals):  # the lane may have ended by then
+            tools.sumo.vehicle.setSpeed(self._car, max(mps - slower_mps, CREEP_MPS))
+            _move_over(tools, self._car, found.lane, incident.hold_s)
         self._left_s = incident.hold_s
-        self._kept = _KeptInLane(stage, SWERVES_AFTER_S)
+        self._kept = _KeptInLane(tools, SWERVES_AFTER_S)
         return "a vehicle cuts in ahead"
 
     def end(self) -> str:
@@ -302,17 +302,17 @@ class StagedCutIn(StagedIncident):
         return ""
 
     def _release(self) -> None:
-        with suppress(*self._stage.sumo.refusals):  # it may have left
-            self._stage.sumo.vehicle.setSpeed(self._car, -1.0)
-            self._stage.sumo.vehicle.setLaneChangeMode(self._car, ANY_LANE_CHANGE)
+        with suppress(*self._tools.sumo.refusals):  # it may have left
+            self._tools.sumo.vehicle.setSpeed(self._car, -1.0)
+            self._tools.sumo.vehicle.setLaneChangeMode(self._car, ANY_LANE_CHANGE)
         self._left_s = 0.0
 
 
 class StagedCutOut(StagedIncident):
     """The vehicle ahead drives at one that stands, and moves over at last."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.CutOut) -> None:
-        self._stage, self._incident = stage, incident
+    def __init__(self, tools: IncidentTools, incident: incidents.CutOut) -> None:
+        self._tools, self._incident = tools, incident
         self._called_s, self._is_over = 0.0, False
         self._car, self._leader, self._beside = "", "", ""
         self._standing: RoadIncident | None = None
@@ -327,26 +327,26 @@ class StagedCutOut(StagedIncident):
 
     def _place(self) -> str:
         """Finds the vehicle ahead, and puts one that stands so far ahead of it that SUMO lets it."""
-        stage, incident, sumo = self._stage, self._incident, self._stage.sumo
-        mps = sumo.speed(stage.ego_id)
+        tools, incident, sumo = self._tools, self._incident, self._tools.sumo
+        mps = sumo.speed(tools.ego_id)
         away_m = max(incident.reveal_m, mps**2 / (2 * USUAL_MPS2) + 3 * mps)
-        found = _beside(stage, incident.ahead_m + 3 * CAR_SPACE_M + away_m)
+        found = _beside(tools, incident.ahead_m + 3 * CAR_SPACE_M + away_m)
         if found is None or mps < incident.from_kmh / KMH_PER_MPS:
             return ""
-        leader = sumo.leader(stage.ego_id, incident.within_m)
+        leader = sumo.leader(tools.ego_id, incident.within_m)
         if not leader or not leader[0] or leader[1] > incident.within_m:
             self._called_s -= 1.0
             if self._called_s < 0:
                 self._called_s = CUT_OUT_S
-                _call(stage, max(incident.ahead_m, FOLLOWS_S * mps))
+                _call(tools, max(incident.ahead_m, FOLLOWS_S * mps))
             return ""
         if sumo.lane_of(leader[0]) != found.lane:
             return ""
         mps = sumo.speed(leader[0])
-        place_m = round(_ahead_m(stage, leader[0], found) + found.at_m + away_m, 1)
+        place_m = round(_ahead_m(tools, leader[0], found) + found.at_m + away_m, 1)
         if place_m > found.edge.length_m - CAR_SPACE_M:
             return ""
-        car = stage.car("breakdown", (found.edge.edge_id,), found.lane, place_m, "0")
+        car = tools.car("breakdown", (found.edge.edge_id,), found.lane, place_m, "0")
         for_s = incident.to_s - incident.from_s
         sumo.set_stop(car, found.edge.edge_id, place_m, int(found.lane.rpartition("_")[2]), for_s, 0)
         sumo.set_signals(car, HAZARD_SIGNAL)
@@ -358,7 +358,7 @@ class StagedCutOut(StagedIncident):
         return ""
 
     def _approach(self) -> str:
-        sumo, standing = self._stage.sumo, self._standing
+        sumo, standing = self._tools.sumo, self._standing
         assert standing is not None
         try:
             left_m = standing.position_m - CAR_M - float(sumo.vehicle.getLanePosition(self._leader))
@@ -366,9 +366,9 @@ class StagedCutOut(StagedIncident):
             is_before = sumo.edge_of(self._leader) == standing.edge_id and left_m > 0
             if is_before and (left_m > soon_m or self._car not in sumo.vehicle_ids()):
                 return ""
-            _move_over(self._stage, self._leader, self._beside, CUT_OUT_S)
-            leader = _KeptInLane(self._stage, CUT_OUT_S, self._leader, NO_LANE_CHANGE)
-            self._kept = leader, _KeptInLane(self._stage, SWERVES_AFTER_S)
+            _move_over(self._tools, self._leader, self._beside, CUT_OUT_S)
+            leader = _KeptInLane(self._tools, CUT_OUT_S, self._leader, NO_LANE_CHANGE)
+            self._kept = leader, _KeptInLane(self._tools, SWERVES_AFTER_S)
             self._release()
         except sumo.refusals:  # it has left
             is_before = False
@@ -383,9 +383,9 @@ class StagedCutOut(StagedIncident):
 
     def end(self) -> str:
         if self._standing and not self._is_over:
-            with suppress(*self._stage.sumo.refusals):  # it may have left
+            with suppress(*self._tools.sumo.refusals):  # it may have left
                 self._release()
-                self._stage.sumo.vehicle.setLaneChangeMode(self._leader, ANY_LANE_CHANGE)
+                self._tools.sumo.vehicle.setLaneChangeMode(self._leader, ANY_LANE_CHANGE)
         self._let_change()
         return ""
 
@@ -395,8 +395,8 @@ class StagedCutOut(StagedIncident):
 
     def _release(self) -> None:
         """The vehicle ahead heeds others again."""
-        self._stage.sumo.vehicle.setSpeedMode(self._leader, HEEDFUL)
-        self._stage.sumo.vehicle.setSpeed(self._leader, -1.0)
+        self._tools.sumo.vehicle.setSpeedMode(self._leader, HEEDFUL)
+        self._tools.sumo.vehicle.setSpeed(self._leader, -1.0)
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
         return self._standing if self._is_over else None

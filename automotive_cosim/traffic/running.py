@@ -12,7 +12,7 @@ from typing import Protocol, TypeVar
 
 from automotive_cosim.contracts import RoadSnapshot
 from automotive_cosim.traffic.convoy import Convoy
-from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.ego_loop import EgoLoop
 from automotive_cosim.traffic.records import make_seen
 from automotive_cosim.traffic.sumo import LibSumo, load_library
 from automotive_cosim.traffic.world import World
@@ -50,7 +50,7 @@ class Running:
         self._beat = beat
 
     @property
-    def drive(self) -> EgoDrive | None:
+    def drive(self) -> EgoLoop | None:
         """The ego's drive; None before it has departed."""
         return self.convoy.first
 

@@ -10,9 +10,9 @@ from itertools import pairwise
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.incidents import ScriptedVehicle, VehicleAction, VehicleCondition
+from automotive_cosim.traffic.incident_tools import CAR_TYPE, IncidentTools
 from automotive_cosim.traffic.manoeuvres import CUT_OUT_S, NO_LANE_CHANGE
 from automotive_cosim.traffic.script import VehicleScript
-from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.staged import StagedIncident
 from automotive_cosim.traffic.sumo import ANY_LANE_CHANGE
 
@@ -35,8 +35,8 @@ NEAREST_S = 0.5
 class _Watch:
     """A condition over time."""
 
-    def __init__(self, condition: VehicleCondition, stage: IncidentStage, script: VehicleScript) -> None:
-        self._condition, self._stage, self._script = condition, stage, script
+    def __init__(self, condition: VehicleCondition, tools: IncidentTools, script: VehicleScript) -> None:
+        self._condition, self._tools, self._script = condition, tools, script
         self._was: bool | None = False if condition.what == "time" else None
         self._past: deque[bool] = deque(maxlen=round(condition.delay_s) + 1)
         self._at: tuple[float, float] | None = None
@@ -69,7 +69,7 @@ class _Watch:
         return value < condition.value if condition.below else value > condition.value
 
     def _value(self, car: str) -> float | None:
-        sumo, condition = self._stage.sumo, self._condition
+        sumo, condition = self._tools.sumo, self._condition
         if condition.what == "speed":
             return sumo.speed(car)
         if condition.what == "acceleration":
@@ -114,10 +114,10 @@ def _passed_m(begin: tuple[float, float], end: tuple[float, float], place: tuple
 class _Task:
     """An action that waits or goes on."""
 
-    def __init__(self, action: VehicleAction, stage: IncidentStage, script: VehicleScript) -> None:
+    def __init__(self, action: VehicleAction, tools: IncidentTools, script: VehicleScript) -> None:
         self.action = action
         self.ends_s, self.times = math.inf, action.times
-        self._watches = [(each.group, _Watch(each, stage, script)) for each in action.when]
+        self._watches = [(each.group, _Watch(each, tools, script)) for each in action.when]
 
     def is_due(self, now_s: float) -> bool:
         """Whether it begins; called once a second."""
@@ -130,15 +130,15 @@ class _Task:
 class StagedVehicle(StagedIncident):
     """A vehicle that does what it is told."""
 
-    def __init__(self, stage: IncidentStage, incident: ScriptedVehicle) -> None:
-        self._stage, self._incident = stage, incident
-        self._lane = stage.lane(incident.route[0], incident.lane)
+    def __init__(self, tools: IncidentTools, incident: ScriptedVehicle) -> None:
+        self._tools, self._incident = tools, incident
+        self._lane = tools.lane(incident.route[0], incident.lane)
         for here, there in pairwise(incident.route):
-            stage.edge(there)
-            if there not in stage.network.crossings.get(here, {}):
+            tools.edge(there)
+            if there not in tools.network.crossings.get(here, {}):
                 raise ScenarioError(f"[[incidents]]: no road leads from edge {here!r} to {there!r}")
-        stage.script.expect(incident)
-        self._waiting = [_Task(action, stage, stage.script) for action in incident.actions]
+        tools.script.expect(incident)
+        self._waiting = [_Task(action, tools, tools.script) for action in incident.actions]
         self._going_on: list[_Task] = []
         self._kept: tuple[float, VehicleAction] | None = None
         """From when on a speed is kept, and whose."""
@@ -148,14 +148,14 @@ class StagedVehicle(StagedIncident):
         """The change of lane that it is about to make."""
 
     def begin(self) -> str:
-        incident, sumo = self._incident, self._stage.sumo
+        incident, sumo = self._incident, self._tools.sumo
         mps = incident.speed_kmh / KMH_PER_MPS
         kind = CAR_TYPE
         if incident.length_m != sumo.type.getLength(CAR_TYPE):
-            kind = self._stage.kind("scripted")
+            kind = self._tools.kind("scripted")
             sumo.type.setLength(kind, incident.length_m)
-        self._car = self._stage.car("scripted", incident.route, self._lane, incident.position_m, f"{mps:.2f}", kind)
-        self._stage.script.enter(incident.name or self._car, self._car)
+        self._car = self._tools.car("scripted", incident.route, self._lane, incident.position_m, f"{mps:.2f}", kind)
+        self._tools.script.enter(incident.name or self._car, self._car)
         self._begun_s = sumo.time() - incident.from_s
         sumo.vehicle.setSpeed(self._car, mps)
         if incident.keeps_lane:
@@ -166,14 +166,14 @@ class StagedVehicle(StagedIncident):
         return ""
 
     def tick(self, local_time: datetime) -> str:
-        sumo = self._stage.sumo
+        sumo = self._tools.sumo
         now_s = sumo.time() - self._begun_s
         is_there = self._car in sumo.vehicle_ids()
         for task in [task for task in self._waiting if task.is_due(now_s) and task not in self._going_on]:
             task.times -= 1
             if not task.times:
                 self._waiting.remove(task)
-            self._stage.script.begun.add(task.action.name)
+            self._tools.script.begun.add(task.action.name)
             if is_there:
                 self._act(task, now_s)
             self._going_on.append(task)
@@ -184,7 +184,7 @@ class StagedVehicle(StagedIncident):
         for task in [task for task in self._going_on if task.ends_s <= now_s + NEAREST_S or not is_there]:
             self._going_on.remove(task)
             if not task.times:
-                self._stage.script.end(task.action)
+                self._tools.script.end(task.action)
         if is_there and self._moves is not None and self._move_over(self._moves):
             self._moves = None
         if is_there and self._kept is not None and self._kept[0] <= now_s + NEAREST_S:
@@ -197,12 +197,12 @@ class StagedVehicle(StagedIncident):
         """The speed that an action asks for."""
         if action.speed_kmh is not None:
             return action.speed_kmh / KMH_PER_MPS
-        sumo = self._stage.sumo
-        other = self._stage.script.car(action.of) or self._car
+        sumo = self._tools.sumo
+        other = self._tools.script.car(action.of) or self._car
         return max(0.0, (action.speed_share or 0.0) * sumo.speed(other) + action.faster_kmh / KMH_PER_MPS)
 
     def _act(self, task: _Task, now_s: float) -> None:
-        sumo, car, action = self._stage.sumo, self._car, task.action
+        sumo, car, action = self._tools.sumo, self._car, task.action
         task.ends_s = now_s + action.over_s
         if action.alone and self._going_on:
             for other in self._going_on:
@@ -235,7 +235,7 @@ class StagedVehicle(StagedIncident):
         """Whether it has come to a distance, or one of two to its place; until then, adapts the speed."""
         if not action.meets_edge:
             return self._is_apart(action) and not action.keeps
-        sumo, script = self._stage.sumo, self._stage.script
+        sumo, script = self._tools.sumo, self._tools.script
         other = script.car(action.of)
         left_m = script.left_m(self._car, action.meets_edge, action.meets_m)
         other_m = script.left_m(other, action.of_meets_edge, action.of_meets_m) if other else 0.0
@@ -252,7 +252,7 @@ class StagedVehicle(StagedIncident):
 
     def _is_apart(self, action: VehicleAction) -> bool:
         """Whether it is at its distance from another; adapts its speed to that."""
-        sumo, script, car = self._stage.sumo, self._stage.script, self._car
+        sumo, script, car = self._tools.sumo, self._tools.script, self._car
         other = script.car(action.of)
         if not other:
             return True
@@ -266,22 +266,22 @@ class StagedVehicle(StagedIncident):
 
     def _move_over(self, action: VehicleAction) -> bool:
         """Whether it can change into the lane that an action asks for: not within a junction."""
-        stage, lane = self._stage, self._stage.sumo.lane_of(self._car)
+        tools, lane = self._tools, self._tools.sumo.lane_of(self._car)
         lanes = self._beside(lane)
         place = action.lane
         if place is None:
-            lane = stage.sumo.lane_of(stage.script.car(action.of) or self._car)
+            lane = tools.sumo.lane_of(tools.script.car(action.of) or self._car)
             beside = self._beside(lane)
-            from_kerb = -action.lanes if stage.network.map.left_hand else action.lanes
+            from_kerb = -action.lanes if tools.network.map.left_hand else action.lanes
             place = beside.index(lane) + from_kerb if beside else -1
             lanes = lanes if beside else ()
         if not lanes:
             return False
         target = lanes[min(max(0, place), len(lanes) - 1)]
-        stage.sumo.vehicle.changeLane(self._car, int(target.rpartition("_")[2]), CUT_OUT_S)
+        tools.sumo.vehicle.changeLane(self._car, int(target.rpartition("_")[2]), CUT_OUT_S)
         return True
 
     def _beside(self, lane: str) -> tuple[str, ...]:
         """The lanes for cars of a lane's edge; none unless it is one."""
-        edge = self._stage.network.edges.get(lane.rpartition("_")[0])
+        edge = self._tools.network.edges.get(lane.rpartition("_")[0])
         return edge.lane_ids if edge is not None and lane in edge.lane_ids else ()

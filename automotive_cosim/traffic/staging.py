@@ -13,6 +13,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.congestion import JAM_BELOW
+from automotive_cosim.traffic.incident_tools import CAR_TYPE, IncidentTools
 from automotive_cosim.traffic.lookout import CROSSING
 from automotive_cosim.traffic.manoeuvres import (
     StagedBraking,
@@ -23,7 +24,6 @@ from automotive_cosim.traffic.manoeuvres import (
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted_limits import Hours, TimedLimit, timed_limits
 from automotive_cosim.traffic.scripted import StagedVehicle
-from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident
 from automotive_cosim.traffic.steering import PARKING
 from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
@@ -52,10 +52,10 @@ TRACTOR_WAY_M = 1000.0
 class _Breakdown(StagedIncident):
     """A stopped car."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.Breakdown) -> None:
-        self._stage, self._incident = stage, incident
-        self._lane = stage.lane(incident.edge, incident.lane)
-        length_m = stage.edge(incident.edge).length_m
+    def __init__(self, tools: IncidentTools, incident: incidents.Breakdown) -> None:
+        self._tools, self._incident = tools, incident
+        self._lane = tools.lane(incident.edge, incident.lane)
+        length_m = tools.edge(incident.edge).length_m
         if not 5.0 <= incident.position_m <= length_m:
             raise ScenarioError(
                 f"[[incidents]]: edge {incident.edge!r} is {length_m:.0f} m long, so a car cannot stand at "
@@ -63,14 +63,14 @@ class _Breakdown(StagedIncident):
             )
 
     def begin(self) -> str:
-        stage, incident = self._stage, self._incident
+        tools, incident = self._tools, self._incident
         position_m = incident.position_m
-        self._car = stage.car("breakdown", (incident.edge,), self._lane, position_m, "0")
+        self._car = tools.car("breakdown", (incident.edge,), self._lane, position_m, "0")
         lane = int(self._lane.rpartition("_")[2])
         flags = PARKING if incident.aside else 0
-        stage.sumo.set_stop(self._car, incident.edge, position_m, lane, incident.to_s - incident.from_s, flags)
-        stage.sumo.set_signals(self._car, HAZARD_SIGNAL)
-        return f"a car has broken down{_on(stage.edge(incident.edge))}"
+        tools.sumo.set_stop(self._car, incident.edge, position_m, lane, incident.to_s - incident.from_s, flags)
+        tools.sumo.set_signals(self._car, HAZARD_SIGNAL)
+        return f"a car has broken down{_on(tools.edge(incident.edge))}"
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident:
         return RoadIncident(IncidentKind.BREAKDOWN, self._incident.edge, self._incident.position_m)
@@ -79,35 +79,35 @@ class _Breakdown(StagedIncident):
 class _Roadworks(StagedIncident):
     """A lower limit and closed lanes, or the sign that is left of them."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.Roadworks) -> None:
-        self._stage, self._incident = stage, incident
-        self.closed = tuple(stage.lane(incident.edge, lane) for lane in incident.closed_lanes)
-        stage.signs.refuse_if_fixed(incident.edge)
-        if len(set(self.closed)) >= len(stage.edge(incident.edge).lane_ids):
+    def __init__(self, tools: IncidentTools, incident: incidents.Roadworks) -> None:
+        self._tools, self._incident = tools, incident
+        self.closed = tuple(tools.lane(incident.edge, lane) for lane in incident.closed_lanes)
+        tools.signs.refuse_if_fixed(incident.edge)
+        if len(set(self.closed)) >= len(tools.edge(incident.edge).lane_ids):
             raise ScenarioError(
                 f"[[incidents]]: roadworks on {incident.edge!r} leave no lane; use kind = 'closure'"
             )
 
     def begin(self) -> str:
-        stage = self._stage
-        stage.signs.put_up(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
-        self._allowed = {lane: stage.sumo.lane.getAllowed(lane) for lane in self.closed}
+        tools = self._tools
+        tools.signs.put_up(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
+        self._allowed = {lane: tools.sumo.lane.getAllowed(lane) for lane in self.closed}
         for lane in self.closed:
-            stage.sumo.lane.setAllowed(lane, AUTHORITY)
+            tools.sumo.lane.setAllowed(lane, AUTHORITY)
         if self.closed:
-            stage.detours.close(self._incident.edge, lanes_only=True)
-            for vehicle in stage.sumo.vehicle_ids():
-                if vehicle != stage.ego_id:
-                    stage.detours.check(vehicle)
+            tools.detours.close(self._incident.edge, lanes_only=True)
+            for vehicle in tools.sumo.vehicle_ids():
+                if vehicle != tools.ego_id:
+                    tools.detours.check(vehicle)
         what = f"a sign of {self._incident.limit_kmh:g} km/h still stands after" if self._incident.over else ""
-        return f"{what} roadworks{_on(stage.edge(self._incident.edge))}".strip()
+        return f"{what} roadworks{_on(tools.edge(self._incident.edge))}".strip()
 
     def end(self) -> str:
-        self._stage.signs.take_down(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
+        self._tools.signs.take_down(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
         for lane, allowed in self._allowed.items():
-            self._stage.sumo.lane.setAllowed(lane, allowed)
+            self._tools.sumo.lane.setAllowed(lane, allowed)
         if self.closed:
-            self._stage.detours.open(self._incident.edge, lanes_only=True)
+            self._tools.detours.open(self._incident.edge, lanes_only=True)
         return ""
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
@@ -117,12 +117,12 @@ class _Roadworks(StagedIncident):
 class _Sign(StagedIncident):
     """A sign with a plate, or a variable one."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.SpeedSign) -> None:
-        self._stage, self._incident = stage, incident
+    def __init__(self, tools: IncidentTools, incident: incidents.SpeedSign) -> None:
+        self._tools, self._incident = tools, incident
         self._by_lane = incident.shows == "by lane"
         for edge in incident.edges:
-            stage.lane(edge, int(self._by_lane))
-            stage.signs.refuse_if_fixed(edge)
+            tools.lane(edge, int(self._by_lane))
+            tools.signs.refuse_if_fixed(edge)
         self._limits, unread = timed_limits(f"{incident.limit_kmh:g} @ ({incident.plate})" * bool(incident.plate))
         if unread:
             raise ScenarioError(
@@ -131,7 +131,7 @@ class _Sign(StagedIncident):
             )
 
     def begin(self) -> str:
-        signs, incident = self._stage.signs, self._incident
+        signs, incident = self._tools.signs, self._incident
         for limit in self._limits:
             signs.put_up_timed(incident.edges, limit, school=False)
         if not self._limits:
@@ -139,7 +139,7 @@ class _Sign(StagedIncident):
         return ""
 
     def end(self) -> str:
-        signs, edges = self._stage.signs, self._incident.edges
+        signs, edges = self._tools.signs, self._incident.edges
         for limit in self._limits:
             signs.take_down_timed(edges, limit)
         if not self._limits:
@@ -150,11 +150,11 @@ class _Sign(StagedIncident):
 class _Jam(StagedIncident):
     """A queue, and a bottleneck that lets one vehicle per lane pass at a time."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.Jam) -> None:
-        self._stage, self._incident = stage, incident
-        self._edges = [stage.edge(edge) for edge in incident.edges]
+    def __init__(self, tools: IncidentTools, incident: incidents.Jam) -> None:
+        self._tools, self._incident = tools, incident
+        self._edges = [tools.edge(edge) for edge in incident.edges]
         for here, there in zip(incident.edges, incident.edges[1:], strict=False):
-            if there not in stage.network.crossings.get(here, {}):
+            if there not in tools.network.crossings.get(here, {}):
                 raise ScenarioError(f"[[incidents]]: jam: no route leads from edge {here!r} to {there!r}")
         room_m = sum(edge.length_m for edge in self._edges) - NARROW_PLACE_M
         if incident.length_m > room_m:
@@ -170,25 +170,25 @@ class _Jam(StagedIncident):
             route = [ahead.edge_id for ahead in self._edges[index:]]
             while position_m > CAR_SPACE_M and left_m > 0:
                 for lane in edge.lane_ids:
-                    self._stage.car("jam", route, lane, position_m, "0")
+                    self._tools.car("jam", route, lane, position_m, "0")
                 position_m -= CAR_SPACE_M
                 left_m -= CAR_SPACE_M
-        return f"a jam of {self._incident.length_m:.0f} m{_on(self._stage.edge(self._edges[-1].edge_id))}"
+        return f"a jam of {self._incident.length_m:.0f} m{_on(self._tools.edge(self._edges[-1].edge_id))}"
 
     def tick(self, local_time: datetime) -> str:
-        stage, last = self._stage, self._edges[-1]
-        for vehicle in stage.sumo.edge_vehicles(last.edge_id):
-            if vehicle not in self._held and vehicle != stage.ego_id:
+        tools, last = self._tools, self._edges[-1]
+        for vehicle in tools.sumo.edge_vehicles(last.edge_id):
+            if vehicle not in self._held and vehicle != tools.ego_id:
                 self._held.add(vehicle)
-                with suppress(*stage.sumo.refusals):  # too near to stop: it slips through
-                    lane = stage.sumo.lane_index(vehicle)
-                    stage.sumo.set_stop(vehicle, last.edge_id, self._head_m, lane, self._incident.hold_s, 0)
+                with suppress(*tools.sumo.refusals):  # too near to stop: it slips through
+                    lane = tools.sumo.lane_index(vehicle)
+                    tools.sumo.set_stop(vehicle, last.edge_id, self._head_m, lane, self._incident.hold_s, 0)
         return ""
 
     def end(self) -> str:
-        for vehicle in self._stage.sumo.edge_vehicles(self._edges[-1].edge_id):
-            if self._stage.sumo.vehicle.isStopped(vehicle) and vehicle != self._stage.ego_id:
-                self._stage.sumo.vehicle.resume(vehicle)
+        for vehicle in self._tools.sumo.edge_vehicles(self._edges[-1].edge_id):
+            if self._tools.sumo.vehicle.isStopped(vehicle) and vehicle != self._tools.ego_id:
+                self._tools.sumo.vehicle.resume(vehicle)
         return ""
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
@@ -200,39 +200,39 @@ class _Jam(StagedIncident):
 class _Closure(StagedIncident):
     """A road that all except the authorities go round."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.Closure) -> None:
-        self._stage = stage
-        self._edge = stage.edge(incident.edge)
+    def __init__(self, tools: IncidentTools, incident: incidents.Closure) -> None:
+        self._tools = tools
+        self._edge = tools.edge(incident.edge)
         self.closed = tuple(self._edge.lane_ids)
 
     @property
     def _called(self) -> str:
-        return self._stage.edge(self._edge.edge_id).name or self._edge.edge_id
+        return self._tools.edge(self._edge.edge_id).name or self._edge.edge_id
 
     def begin(self) -> str:
-        sumo, edge = self._stage.sumo, self._edge
+        sumo, edge = self._tools.sumo, self._edge
         self._allowed = {lane: sumo.lane.getAllowed(lane) for lane in edge.lane_ids}
         for lane in edge.lane_ids:
             sumo.lane.setAllowed(lane, AUTHORITY)
-        self._stage.detours.close(edge.edge_id)
+        self._tools.detours.close(edge.edge_id)
         for vehicle in sumo.vehicle_ids():
             ahead = sumo.route(vehicle)[sumo.route_index(vehicle) :]
-            if vehicle != self._stage.ego_id and edge.edge_id in ahead:  # the ego has a driver of its own
-                self._stage.detours.send_round(vehicle)
+            if vehicle != self._tools.ego_id and edge.edge_id in ahead:  # the ego has a driver of its own
+                self._tools.detours.send_round(vehicle)
         return f"{self._called} is closed"
 
     def tick(self, local_time: datetime) -> str:
         return self._turn_off()
 
     def end(self) -> str:
-        self._stage.detours.open(self._edge.edge_id)
+        self._tools.detours.open(self._edge.edge_id)
         for lane, allowed in self._allowed.items():
-            self._stage.sumo.lane.setAllowed(lane, allowed)
+            self._tools.sumo.lane.setAllowed(lane, allowed)
         return f"{self._called} is open again"
 
     def _turn_off(self) -> str:
         """The ego's driver sees the sign on the previous edge and follows the detour to the destination."""
-        sumo, ego, sensor = self._stage.sumo, self._stage.ego_id, self._stage.sensor
+        sumo, ego, sensor = self._tools.sumo, self._tools.ego_id, self._tools.sensor
         if sensor is None:
             return ""
         try:
@@ -246,7 +246,7 @@ class _Closure(StagedIncident):
         if not way or self._edge.edge_id in way:
             return ""
         sumo.set_route(ego, way)
-        self._stage.route_changed = True
+        self._tools.route_changed = True
         return f"driver goes round {self._called}, which is closed"
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident:
@@ -256,11 +256,11 @@ class _Closure(StagedIncident):
 class _SchoolZone(StagedIncident):
     """A limit by the clock."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.SchoolZone) -> None:
-        self._stage, self._edges = stage, incident.edges
+    def __init__(self, tools: IncidentTools, incident: incidents.SchoolZone) -> None:
+        self._tools, self._edges = tools, incident.edges
         for edge in incident.edges:
-            stage.edge(edge)
-            stage.signs.refuse_if_fixed(edge)
+            tools.edge(edge)
+            tools.signs.refuse_if_fixed(edge)
         opens, closes = incident.opens, incident.closes
         hours = Hours(
             SCHOOL_DAYS,
@@ -272,11 +272,11 @@ class _SchoolZone(StagedIncident):
         )
 
     def begin(self) -> str:
-        self._stage.signs.put_up_timed(self._edges, self._limit, school=True)
+        self._tools.signs.put_up_timed(self._edges, self._limit, school=True)
         return ""
 
     def end(self) -> str:
-        self._stage.signs.take_down_timed(self._edges, self._limit)
+        self._tools.signs.take_down_timed(self._edges, self._limit)
         return ""
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident:
@@ -287,56 +287,56 @@ class _SchoolZone(StagedIncident):
 class _RushHour(StagedIncident):
     """More demand."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.RushHour) -> None:
-        self._stage, self._incident = stage, incident
+    def __init__(self, tools: IncidentTools, incident: incidents.RushHour) -> None:
+        self._tools, self._incident = tools, incident
 
     def begin(self) -> str:
-        simulation = self._stage.sumo.simulation
+        simulation = self._tools.sumo.simulation
         self._before = simulation.getScale()
         simulation.setScale(self._before * self._incident.scale)
         return ""
 
     def end(self) -> str:
-        self._stage.sumo.simulation.setScale(self._before)
+        self._tools.sumo.simulation.setScale(self._before)
         return ""
 
 
 class _Tractor(StagedIncident):
     """A slow vehicle."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.Tractor) -> None:
-        self._stage, self._incident = stage, incident
-        stage.edge(incident.from_edge)
-        stage.edge(incident.to_edge)
+    def __init__(self, tools: IncidentTools, incident: incidents.Tractor) -> None:
+        self._tools, self._incident = tools, incident
+        tools.edge(incident.from_edge)
+        tools.edge(incident.to_edge)
 
     def begin(self) -> str:
-        stage, incident = self._stage, self._incident
-        kind = stage.kind("tractor")
-        types = stage.sumo.type
+        tools, incident = self._tools, self._incident
+        kind = tools.kind("tractor")
+        types = tools.sumo.type
         types.setShapeClass(kind, "truck")
         types.setLength(kind, incident.length_m)
         types.setMaxSpeed(kind, incident.speed_kmh / KMH_PER_MPS)
         types.setAccel(kind, 1.0)
         types.setParameter(kind, "has.rerouting.device", "false")
-        way = stage.sumo.find_route(incident.from_edge, incident.to_edge, kind).edges
+        way = tools.sumo.find_route(incident.from_edge, incident.to_edge, kind).edges
         if not way:
             raise ScenarioError(
                 f"[[incidents]]: tractor: no route leads from {incident.from_edge!r} to {incident.to_edge!r}"
             )
-        stage.car("tractor", way, stage.lane(incident.from_edge, 0), incident.length_m, "max", kind)
-        return f"a tractor{_on(stage.edge(incident.from_edge))}"
+        tools.car("tractor", way, tools.lane(incident.from_edge, 0), incident.length_m, "max", kind)
+        return f"a tractor{_on(tools.edge(incident.from_edge))}"
 
 
 class _Pedestrians(StagedIncident):
     """Groups that cross."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.Pedestrians) -> None:
-        self._stage, self._incident = stage, incident
+    def __init__(self, tools: IncidentTools, incident: incidents.Pedestrians) -> None:
+        self._tools, self._incident = tools, incident
         try:
-            self._walk = stage.sumo.simulation.findIntermodalRoute(incident.from_edge, incident.to_edge)
-        except stage.sumo.refusals as error:
+            self._walk = tools.sumo.simulation.findIntermodalRoute(incident.from_edge, incident.to_edge)
+        except tools.sumo.refusals as error:
             raise ScenarioError(f"[[incidents]]: pedestrians: {error}") from error
-        if not self._walk or not any(CROSSING.fullmatch(edge) for edge in stage.sumo.edge_ids()):
+        if not self._walk or not any(CROSSING.fullmatch(edge) for edge in tools.sumo.edge_ids()):
             raise ScenarioError(
                 f"[[incidents]]: pedestrians cannot walk from {incident.from_edge!r} to {incident.to_edge!r}; the "
                 "network requires sidewalks and crossings (netconvert --sidewalks.guess --crossings.guess)"
@@ -355,10 +355,10 @@ class _Pedestrians(StagedIncident):
         return ""
 
     def _send(self) -> None:
-        person = self._stage.sumo.person
-        name = self._stage.name("person")
+        person = self._tools.sumo.person
+        name = self._tools.name("person")
         edge = self._walk[0].edges[0]
-        length_m = self._stage.edge(edge).length_m
+        length_m = self._tools.edge(edge).length_m
         person.add(name, edge, max(0.0, length_m - 5.0))
         person.appendWalkingStage(name, self._walk[0].edges, 5.0)
 
@@ -366,8 +366,8 @@ class _Pedestrians(StagedIncident):
 class _Ahead(StagedIncident):
     """Another incident, on a road that is chosen when the time has come."""
 
-    def __init__(self, stage: IncidentStage, incident: incidents.AheadIncident) -> None:
-        self._stage, self._incident = stage, incident
+    def __init__(self, tools: IncidentTools, incident: incidents.AheadIncident) -> None:
+        self._tools, self._incident = tools, incident
         self._staged: StagedIncident | None = None
         self._tail: RoadIncident | None = None
 
@@ -377,7 +377,7 @@ class _Ahead(StagedIncident):
         chosen = self._chosen()
         if chosen is None:
             return ""
-        self._staged = staged(self._stage, chosen)
+        self._staged = staged(self._tools, chosen)
         self.closed = self._staged.closed
         return self._staged.begin()
 
@@ -390,7 +390,7 @@ class _Ahead(StagedIncident):
 
     def _chosen(self) -> incidents.Incident | None:
         """The incident on its road; None as long as there is no room for it."""
-        sensor, network, incident = self._stage.sensor, self._stage.network, self._incident
+        sensor, network, incident = self._tools.sensor, self._tools.network, self._incident
         assert sensor is not None
         place_m = sensor.position_m + incident.ahead_m
         if place_m > sensor.route.length_m:
@@ -434,7 +434,7 @@ class _Ahead(StagedIncident):
             for edge in takewhile(lambda edge: edge.speed_mps * KMH_PER_MPS > limit_kmh, edges)
             if edge.cars_mps is None
             and len(edge.lane_ids) > by_lane
-            and not self._stage.signs.has_variable(edge.edge_id)
+            and not self._tools.signs.has_variable(edge.edge_id)
         )
         if edges[0].edge_id not in fit:
             return None
@@ -462,7 +462,7 @@ def _covering(edges: Sequence[Edge], length_m: float) -> int:
     return 0
 
 
-STAGED: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], StagedIncident]] = {
+STAGED: Mapping[type[incidents.Incident], Callable[[IncidentTools, Any], StagedIncident]] = {
     incidents.Breakdown: _Breakdown,
     incidents.Roadworks: _Roadworks,
     incidents.SpeedSign: _Sign,
@@ -482,13 +482,13 @@ STAGED: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], StagedI
 """What stages each kind of incident."""
 
 
-def staged(stage: IncidentStage, incident: incidents.Incident) -> StagedIncident:
+def staged(tools: IncidentTools, incident: incidents.Incident) -> StagedIncident:
     """What stages an incident.
 
     Raises:
         ScenarioError: it does not fit the network.
     """
-    return STAGED[type(incident)](stage, incident)
+    return STAGED[type(incident)](tools, incident)
 
 
 def _on(edge: Edge) -> str:

@@ -19,8 +19,9 @@ from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion, Free
 from automotive_cosim.traffic.detours import Detours
-from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FASTEST_MPS, FOR_GOOD_S, Driver
+from automotive_cosim.traffic.ego_loop import EgoLoop
+from automotive_cosim.traffic.incident_tools import TEMPLATE_TYPE, IncidentTools
 from automotive_cosim.traffic.incidents import Incidents
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
@@ -39,7 +40,6 @@ from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.signs import inner_lanes, variable_edges
-from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import (
     AVERAGED,
@@ -140,7 +140,7 @@ class World:
             if abs(travel_time(edge_id) * edge.speed_mps / edge.length_m - 1) > 0.01
         ]
         """Edges on which SUMO's free flow is none of cars: it is lane 0's, be that for bicycles."""
-        self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO, variable), scenario)
+        self._incidents = Incidents(IncidentTools(self._sumo, self.network, self._surface, EGO, variable), scenario)
         self._has_incidents = self._incidents.are_left
         self._takes_any_route = takes_any_route(self._configuration, self.network)
         self._second_steps = max(1, round(1.0 / self.step_s))
@@ -216,7 +216,7 @@ class World:
         for mode in (LIMITS, AVERAGED):
             self._sumo.find_route(edge, edge, SEARCHING_TYPE, NOW, mode)
 
-    def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoDrive:
+    def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoLoop:
         """Inserts the ego and runs until it is on the road; ``beat`` is called after every step.
 
         Raises:
@@ -269,12 +269,12 @@ class World:
         """Whether an equipped car waits for a gap."""
         return bool(self._coming)
 
-    def entered(self) -> dict[str, EgoDrive]:
+    def entered(self) -> dict[str, EgoLoop]:
         """The drives of the cars that have entered the traffic in the last step."""
         now = frozenset(self._sumo.departed()) if self._coming else frozenset()
         return {car: self._entered(car) for car in list(self._coming) if car in now}
 
-    def equip(self, car: str, plan: EgoPlan) -> EgoDrive:
+    def equip(self, car: str, plan: EgoPlan) -> EgoLoop:
         """Puts a cockpit into a vehicle that drives anyway. SUMO goes on driving it as it does, until something is
         asked for; then its driver reacts as the plan's does, and drives on as this one did.
 
@@ -303,7 +303,7 @@ class World:
         sensor = self._sensor(car)
         pedals = SumoPedals(sumo, car, self.network, sensor, self._router, hands_off=True)
         road = self.roads[car] = EgoRoad(self, sumo, car, sensor, pedals)
-        return EgoDrive(road, Driver(plan, pedals, self.step_s, own), road.now, take=pedals.take)
+        return EgoLoop(road, Driver(plan, pedals, self.step_s, own), road.now, take=pedals.take)
 
     def set_out(self) -> list[str]:
         """The cars without a cockpit that have set out in the last step, on roads that the network has for cars."""
@@ -316,7 +316,7 @@ class World:
         self.roads.pop(car, None)
         self._coming.pop(car, None)
 
-    def _entered(self, car: str) -> EgoDrive:
+    def _entered(self, car: str) -> EgoLoop:
         """The drive of a car that has just entered the traffic."""
         coming = self._coming.pop(car)
         plan, edges, sumo = coming.plan, coming.edges, self._sumo
@@ -350,7 +350,7 @@ class World:
             sumo.vehicle.setVia(car, stops)
         pedals = SumoPedals(sumo, car, self.network, sensor, self._router, stops)
         road = self.roads[car] = EgoRoad(self, sumo, car, sensor, pedals, coming.round)
-        return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
+        return EgoLoop(road, Driver(plan, pedals, self.step_s), road.now)
 
     def _sensor(self, car: str) -> Sensor:
         return Sensor(self._sumo, car, self.network, self.congestion, self._reported, self._emergency, self.step_s)

@@ -9,7 +9,7 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit import places
+from automotive_cosim.cockpit import pois
 from automotive_cosim.cockpit.apps.map.state import turns
 from automotive_cosim.cockpit.apps.media.state import USB_TRACKS, library
 from automotive_cosim.cockpit.apps.phone.state import directory
@@ -74,17 +74,17 @@ def test_the_cabin_with_keep_climate_is_two_taps_away_from_climate(make: Make) -
 def test_there_is_enough_of_everything_and_no_two_are_alike(network: RoadNetwork, seed: int) -> None:
     rng = np.random.default_rng(seed)
     music, people_known = library(rng), directory(rng)
-    atlas = places.atlas(RoadMap(network), rng)
+    atlas = pois.atlas(RoadMap(network), rng)
     tracks = music.of("BLUETOOTH") + music.of("USB")
     stations = music.of("FM") + music.of("DAB")
     assert len({track.title for track in tracks}) == len(tracks) >= 200
     assert len({(station.title, station.by) for station in stations}) == len(stations) >= 40
     assert len({contact.number for contact in people_known.contacts}) == len(people_known.contacts) >= 60
     assert len({place.name for place in atlas.places}) == len({place.edge_id for place in atlas.places}) >= 80
-    assert {place.kind for place in atlas.places} == set(places.PlaceKind)
-    for place in atlas.of(places.PlaceKind.PARKING):
-        zone = next(zone for zone in places.ZONES if place.detail.startswith(f"{zone}: "))
-        assert place.detail.endswith(f" {places.PRICES[zone]:.2f} an hour")
+    assert {place.kind for place in atlas.places} == set(pois.PoiKind)
+    for place in atlas.of(pois.PoiKind.PARKING):
+        zone = next(zone for zone in pois.ZONES if place.detail.startswith(f"{zone}: "))
+        assert place.detail.endswith(f" {pois.PRICES[zone]:.2f} an hour")
 
 
 @pytest.mark.parametrize("count", [0, 1, 3])
@@ -93,7 +93,7 @@ def test_a_tiny_network_has_as_many_places_as_streets(count: int) -> None:
         Road(f"e{i}", f"Street {i}", "residential", 1, 50.0, None, LimitSource.ASSUMED, False, ((0, i), (50, i)))
         for i in range(count)
     )
-    atlas = places.atlas(RoadMap(RoadNetwork(roads, (0, 0, 50, 50), None, (0, 0), False)), np.random.default_rng(1))
+    atlas = pois.atlas(RoadMap(RoadNetwork(roads, (0, 0, 50, 50), None, (0, 0), False)), np.random.default_rng(1))
     assert len(atlas.places) == count
     assert len(atlas.streets) == count
 
@@ -581,10 +581,10 @@ def test_places_on_the_way_come_before_those_far_beside_it(cockpit: Cockpit, aro
         return min(place.away_m(*roads.find(edge).shape_m[-1]) for edge in around.driving.ahead.route_edges)  # type: ignore[union-attr]
 
     state = cockpit._state
-    atlas, roads = state.of(places.Gazetteer), state.roads
+    atlas, roads = state.of(pois.Gazetteer), state.roads
     press(cockpit, "open map; map.route; route.tab.ways")
     shown_first = [detour(shown(cockpit, f"route.way.{at}")) for at in (1, 2, 3)]
-    assert shown_first == sorted(detour(place.name) for place in atlas.of(places.PlaceKind.CHARGING))[:3]
+    assert shown_first == sorted(detour(place.name) for place in atlas.of(pois.PoiKind.CHARGING))[:3]
 
 
 def test_no_music_from_a_phone_that_is_not_linked(cockpit: Cockpit) -> None:

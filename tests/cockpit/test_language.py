@@ -24,7 +24,7 @@ from automotive_cosim.cockpit.apps.phone.state import Directory
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said, word
 from automotive_cosim.cockpit.occupants import Kind, Occupant, Seat
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.theme import Weight, face
 from automotive_cosim.cockpit.widgets import Widget

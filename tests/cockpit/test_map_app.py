@@ -16,7 +16,7 @@ from automotive_cosim.cockpit.apps.map.state import Viewpoint
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera, View
-from automotive_cosim.cockpit.places import PlaceKind
+from automotive_cosim.cockpit.pois import PoiKind
 from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.signals import LINK
@@ -256,7 +256,7 @@ def test_every_place_is_reached_while_driving_by_a_short_way(cockpit: Cockpit) -
     cockpit.open_app("map")
     look_through("map.place.")
     press(cockpit, "map.list.explore")
-    kinds = [kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK)]
+    kinds = [kind for kind in PoiKind if kind not in (PoiKind.HOME, PoiKind.WORK)]
     for kind in kinds:
         while all(element.resource_id != shown_id(f"explore.kind.{kind}") for element in cockpit.elements()):
             assert cockpit.scroll("explore.kinds", Direction.DOWN).code is FeedbackCode.OK

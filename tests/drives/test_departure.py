@@ -13,7 +13,7 @@ import pytest
 
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, LIGHTS, MOTION, OCCUPANT, SEAT, Signal
 from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, SightKind, Weather
 from automotive_cosim.cosim.moment import Moment

@@ -55,7 +55,7 @@ def test_other_conditions_have_a_table_of_their_own_that_says_why(packed):
     entries = read_entries(packed)
     assert len(tables(entries)) == 1
     for field, value in (
-        ("suite", "9.9"),
+        ("version", "9.9"),
         ("seeds", "0, 1"),
         ("limits", "40 steps"),
         ("episodes", "3 of each (x)"),
@@ -106,14 +106,14 @@ def test_nothing_to_show_is_one_line(tmp_path):
 
 def test_versions_stand_apart_unless_told_and_then_the_page_says_so(shelf, tmp_path, monkeypatch):
     entries = [each for path in sorted(shelf.iterdir()) if path.suffix == ".bundle" for each in read_entries(path)]
-    older = replace(entries[0], conditions=replace(entries[0].conditions, suite="0.1"))
+    older = replace(entries[0], conditions=replace(entries[0].conditions, version="0.1"))
     monkeypatch.setattr("automotive_cosim.publish.leaderboard.read_entries", lambda path: [entries[0], older])
     write_leaderboard(shelf, tmp_path / "apart.html")
     write_leaderboard(shelf, tmp_path / "mixed.html", mixed=True)
     apart, mixed = ((tmp_path / f"{name}.html").read_text() for name in ("apart", "mixed"))
     assert (apart.count("<tbody>"), mixed.count("<tbody>")) == (2, 1)
     assert "mixes versions" not in apart
-    assert f"mixes versions 0.1, {entries[0].conditions.suite} " in mixed
+    assert f"mixes versions 0.1, {entries[0].conditions.version} " in mixed
 
 
 @pytest.mark.sumo

@@ -26,7 +26,7 @@ from automotive_cosim.safety.curves import curves, means
 from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, sentence, tables, unseen
 from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, blame, hunt, try_carefully
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
-from automotive_cosim.safety.page import suite
+from automotive_cosim.safety.page import regression_plan
 from automotive_cosim.safety.samplers import SAMPLERS, RandomSampler, even_points, make_sampler
 from automotive_cosim.safety.space import (
     FACTORS,
@@ -471,8 +471,8 @@ def test_the_bound_is_the_rule_of_three() -> None:
 
 def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
     found = searched()
-    path = tmp_path / "suite.toml"
-    path.write_text(suite(found, "rule-perfect", "rules"))
+    path = tmp_path / "regression.toml"
+    path.write_text(regression_plan(found, "rule-perfect", "rules"))
     plan = make_plan(read_plan(path))
     fails, passes = plan.trials
     assert (fails.drive, fails.settings.driver) == ("grid_june", "hurried")
@@ -481,7 +481,7 @@ def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
     assert len({job.id for job in plan.jobs()}) == len({job.instance for job in plan.jobs()}) == 2
     assert make_plan(plan.as_json()) == plan
     found.not_reduced.append(found.minimal[0].first)
-    path.write_text(suite(found, "rule-perfect", "rules"))
+    path.write_text(regression_plan(found, "rule-perfect", "rules"))
     assert len(make_plan(read_plan(path)).trials) == 3, "a failure that was not reduced is saved as it was found"
 
 

@@ -21,8 +21,8 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.traffic.base import Advance, EgoPlan
-from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import Driver
+from automotive_cosim.traffic.ego_loop import EgoLoop
 from automotive_cosim.traffic.profiles import profile
 from tests.scripted.car import ScriptedCar
 from tests.scripted.stretches import Layout, Leader, LonLat, Stretch
@@ -78,7 +78,7 @@ class Scripted:
         car = ScriptedCar(
             self._layout, profile(plan.driver), self._step_s, self._start_s, start_mps, parked=plan.parked
         )
-        return ScriptedTraffic(EgoDrive(car, Driver(plan, car, self._step_s), car.now), self.network)
+        return ScriptedTraffic(EgoLoop(car, Driver(plan, car, self._step_s), car.now), self.network)
 
     def close(self) -> None:
         """Does nothing."""
@@ -87,7 +87,7 @@ class Scripted:
 class ScriptedTraffic:
     """One drive on a scripted road."""
 
-    def __init__(self, drive: EgoDrive, network: RoadNetwork) -> None:
+    def __init__(self, drive: EgoLoop, network: RoadNetwork) -> None:
         self._drive = drive
         self._network = network
         self._is_closed = False
@@ -133,7 +133,7 @@ class ScriptedTraffic:
         """See ``Traffic.close``."""
         self._is_closed = True
 
-    def _open(self) -> EgoDrive:
+    def _open(self) -> EgoLoop:
         if self._is_closed:
             raise TrafficError("the drive is closed")
         return self._drive

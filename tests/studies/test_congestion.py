@@ -19,7 +19,6 @@ from automotive_cosim.formats.incidents import EgoIncident
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.studies import load_study
 from automotive_cosim.studies.commands import app
-from automotive_cosim.studies.congestion.drive import CONGESTION
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows
 from automotive_cosim.studies.congestion.page import answer, warnings
 from automotive_cosim.studies.congestion.plan import MEASURES, CongestionPlan
@@ -33,6 +32,7 @@ from automotive_cosim.studies.congestion.results import (
     throughput_per_h,
 )
 from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, FlowState, FlowSums, MeasureOutcome
+from automotive_cosim.studies.congestion.seed import CONGESTION
 from automotive_cosim.studies.congestion.tables import emissions, whole, worst
 from automotive_cosim.studies.congestion.words import PHRASES, name_of
 from automotive_cosim.studies.plan import plan_of

@@ -13,7 +13,7 @@ import pytest
 
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.places import PRICES, ZONES
+from automotive_cosim.cockpit.pois import PRICES, ZONES
 from automotive_cosim.cockpit.signals import HVAC, LIGHTS
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.geo.place import Place, shipped

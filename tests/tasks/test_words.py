@@ -12,7 +12,7 @@ import pytest
 
 from automotive_cosim.cockpit.apps.phone.state import directory
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.task import Half, Task

@@ -17,7 +17,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.errors import TrafficError
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
-from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.ego_loop import EgoLoop
 from automotive_cosim.traffic.options import SCRATCH, Setup
 from automotive_cosim.traffic.world import World
 
@@ -98,7 +98,7 @@ class InProcess:
 class InProcessTraffic:
     """One drive in this process's simulation, until the next one departs."""
 
-    def __init__(self, owner: InProcess, world: World, drive: EgoDrive) -> None:
+    def __init__(self, owner: InProcess, world: World, drive: EgoLoop) -> None:
         self._owner: InProcess | None = owner
         self._world = world
         self._drive = drive

@@ -21,7 +21,7 @@ from automotive_cosim.formats.incidents import Closure, EmergencyVehicle, Roadwo
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.ego_loop import EgoLoop
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.world import World
 from tests.traffic.in_process import InProcess
@@ -107,14 +107,14 @@ def running(scenario: Scenario) -> Iterator[tuple[InProcess, World, Any]]:
         yield simulation, simulation.world, libsumo
 
 
-def driven(drive: EgoDrive) -> Iterator[DrivingState]:
+def driven(drive: EgoLoop) -> Iterator[DrivingState]:
     """The states of a drive, second by second, to its end."""
     while drive.state.end is None:
         yield drive.state
         drive.advance(1.0)
 
 
-def depart(world: World, scenario: Scenario, driver: str = "steady", *incidents: EmergencyVehicle) -> EgoDrive:
+def depart(world: World, scenario: Scenario, driver: str = "steady", *incidents: EmergencyVehicle) -> EgoLoop:
     return world.depart(EgoPlan(scenario.ego.trips[0], driver, seed=1, incidents=incidents))
 
 

@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.flow import card, fill, grid
 from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, named, offered, unknown
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Show
-from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
+from automotive_cosim.cockpit.pois import Gazetteer, PoiKind
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
@@ -24,13 +24,13 @@ from automotive_cosim.contracts.text import joined, say
 
 APPOINTMENTS = 4
 _OCCASIONS = (
-    (say("Check-up"), PlaceKind.HOSPITAL),
-    (say("Team meeting"), PlaceKind.WORK),
-    (say("Meal with Nora"), PlaceKind.RESTAURANT),
-    (say("Parents' evening"), PlaceKind.SCHOOL),
-    (say("Training"), PlaceKind.GYM),
-    (say("Groceries"), PlaceKind.SHOP),
-    (say("Meet the visitors"), PlaceKind.STATION),
+    (say("Check-up"), PoiKind.HOSPITAL),
+    (say("Team meeting"), PoiKind.WORK),
+    (say("Meal with Nora"), PoiKind.RESTAURANT),
+    (say("Parents' evening"), PoiKind.SCHOOL),
+    (say("Training"), PoiKind.GYM),
+    (say("Groceries"), PoiKind.SHOP),
+    (say("Meet the visitors"), PoiKind.STATION),
 )
 
 

@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.cards import content, heading, rows, schedule, sli
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.flow import card, fill, line, panels, stack
 from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, offered
-from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
+from automotive_cosim.cockpit.pois import Gazetteer, PoiKind
 from automotive_cosim.cockpit.signals import ENERGY
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
@@ -76,7 +76,7 @@ def charging(state: State) -> tuple[Widget, ...]:
         "charging.stations",
         say("Charging stations"),
         state,
-        nearest(state, state.of(Gazetteer).of(PlaceKind.CHARGING)),
+        nearest(state, state.of(Gazetteer).of(PoiKind.CHARGING)),
         lambda index, each: replace(destination(f"charging.station.{index}", each.name, state), detail=each.detail),
     )
     return fill(content(state), panels(battery, stack((32, heading(say("Stations nearby"))), 12, stations)))

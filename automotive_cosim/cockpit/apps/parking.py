@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.commands import Put, SimpleCommand
 from automotive_cosim.cockpit.flow import card, fill, panels, stack
 from automotive_cosim.cockpit.functions import CallMade, offered
 from automotive_cosim.cockpit.layout import REST
-from automotive_cosim.cockpit.places import PRICES, ZONES
+from automotive_cosim.cockpit.pois import PRICES, ZONES
 from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type

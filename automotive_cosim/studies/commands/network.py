@@ -32,8 +32,8 @@ def congestion(
 
     Rerun the command to resume a stopped study.
     """
-    from automotive_cosim.studies.congestion.drive import CONGESTION
     from automotive_cosim.studies.congestion.plan import CongestionPlan
+    from automotive_cosim.studies.congestion.seed import CONGESTION
 
     plan = filled(CongestionPlan, settings)
     tell_reading(plan.scenario)

@@ -3,7 +3,7 @@
 plan      what a study runs, and its measures
 rows      what is kept of every seed
 outputs   reads SUMO's outputs
-drive     one seed: the traffic without a measure and with each
+seed      one seed: the traffic without a measure and with each
 results   reads stored results, and the figures that traffic engineers use
 tables, charts, maps, page    the report
 """

@@ -11,7 +11,7 @@ driver     drives to the next decision; lets an agent at the cockpit decide
 policies   the deciding rules, and their results
 results    reads stored results, as data frames
 everyone   how an effect is spread over everyone
-suite      the same study on several networks
+networks   the same study on several networks
 demand     how far the demand is from an equilibrium
 data       every future as a row, as files
 tracks     where the ego was in every future

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from automotive_cosim.cockpit.apps.map.scene import panned
 from automotive_cosim.cockpit.apps.map.state import Navigation, Viewpoint
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.state import Command, CommandRecord, Message, State
 from automotive_cosim.contracts import Feedback, Reroute

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.apps.map.screens import away, matches
 from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, NO_GOAL, Navigation
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.functions import CallMade, as_told, disabled, locked, named, offered, reading
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import Feedback, FeedbackCode

@@ -16,7 +16,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
 from automotive_cosim.cockpit.messages import Pick, Show
-from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
+from automotive_cosim.cockpit.pois import Gazetteer, PoiKind
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import Message, State
@@ -213,7 +213,7 @@ def _chargers(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...])
     here = ego(state)
     taken = [*avoid] if here is None else [*avoid, box_of(camera, rect, here[:2], 48)]
     room, found = rect.inset(4), list[Badge]()
-    for stop in state.of(Gazetteer).of(PlaceKind.CHARGING):
+    for stop in state.of(Gazetteer).of(PoiKind.CHARGING):
         box = box_of(camera, rect, (stop.x_m, stop.y_m), CHARGER)
         if room.encloses(box) and not any(box.overlaps(other) for other in taken):
             taken.append(box)

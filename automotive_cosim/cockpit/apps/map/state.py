@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import Any
 
 from automotive_cosim.cockpit.map import RoadMap
-from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.road import ICONS
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon

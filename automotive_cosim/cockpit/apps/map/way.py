@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.flow import BlockItem, BlockPart, at, fill, framed, grid, line, stack
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Back, Pick, Show
-from automotive_cosim.cockpit.places import SORTS, Destination, Gazetteer, PlaceKind
+from automotive_cosim.cockpit.pois import SORTS, Destination, Gazetteer, PoiKind
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -23,7 +23,7 @@ from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Row, Ti
 from automotive_cosim.contracts import RouteOption
 from automotive_cosim.contracts.text import say
 
-_EVERYDAY = tuple(kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK))
+_EVERYDAY = tuple(kind for kind in PoiKind if kind not in (PoiKind.HOME, PoiKind.WORK))
 
 
 def explore(state: State) -> tuple[Widget, ...]:
@@ -31,7 +31,7 @@ def explore(state: State) -> tuple[Widget, ...]:
     chosen = state.picked["explore"]
     if chosen == "all":
         return _page(state, say("Places nearby"), Icon.PLACE, "explore", 16, (REST, _kinds(state)))
-    kind = PlaceKind(chosen)
+    kind = PoiKind(chosen)
     found = nearest(state, state.of(Gazetteer).of(kind))
     places = rows(
         "explore.places",
@@ -72,7 +72,7 @@ def _page(state: State, text: str, icon: Icon, key: str, *items: BlockItem) -> t
 
 
 def _kinds(state: State) -> BlockPart:
-    def entry(index: int, kind: PlaceKind) -> Button:
+    def entry(index: int, kind: PoiKind) -> Button:
         return Button(
             key=f"explore.kind.{kind}",
             text=SORTS[kind].title,
@@ -135,7 +135,7 @@ def _place_buttons(name: str, known: Destination | None, state: State) -> Iterat
         ),
     )
     yield from ((56, start), 8, (56, stop), 8, (56, save))
-    if known is not None and known.kind is PlaceKind.PARKING and "parking" in state.of(Installed).apps:
+    if known is not None and known.kind is PoiKind.PARKING and "parking" in state.of(Installed).apps:
         pay = Button(key="place.pay", text=say("Pay for parking"), icon=Icon.TICKET, on_tap=Show("parking"))
         yield from (8, (56, pay))
 
@@ -171,7 +171,7 @@ def _ways(state: State) -> BlockPart:
     """The present route, alternatives, and places to charge on the way."""
     ahead = None if state.outside is None else state.outside.driving.ahead
     others = () if ahead is None else ahead.alternatives
-    chargers = along(state, state.of(Gazetteer).of(PlaceKind.CHARGING))
+    chargers = along(state, state.of(Gazetteer).of(PoiKind.CHARGING))
 
     def other(number: int, each: RouteOption) -> Row:
         longer = _more(each.eta_s, 0 if ahead is None else ahead.eta_s)

@@ -35,7 +35,7 @@ class Stepper(Protocol):
     def shapes(self) -> RoadShapes: ...
 
 
-class EgoDrive:
+class EgoLoop:
     """One drive on a road, from its first instant."""
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Places, generated from a seed, on streets of the network."""
+"""POIs: places by name, generated from a seed, on streets of the network."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ PRICES = {"Zone A": 4.0, "Zone B": 2.5, "Zone C": 1.2}
 """Price of an hour's parking by zone; each car park lies in one, which its details name."""
 
 
-class PlaceKind(StrEnum):
-    """Kinds of places."""
+class PoiKind(StrEnum):
+    """Kinds of POIs."""
 
     HOME = "home"
     WORK = "work"
@@ -54,42 +54,40 @@ class Sort:
     words: str
 
 
-SORTS: Mapping[PlaceKind, Sort] = {
-    PlaceKind.HOME: Sort(say("Home"), Icon.HOME, 1, "{}", "Home"),
-    PlaceKind.WORK: Sort(say("Work"), Icon.WORK, 1, "{}", "Work"),
-    PlaceKind.CHARGING: Sort(
+SORTS: Mapping[PoiKind, Sort] = {
+    PoiKind.HOME: Sort(say("Home"), Icon.HOME, 1, "{}", "Home"),
+    PoiKind.WORK: Sort(say("Work"), Icon.WORK, 1, "{}", "Work"),
+    PoiKind.CHARGING: Sort(
         say("Charging"),
         Icon.CHARGING,
         10,
         "{} Charging",
         "Volta Lumen Amber Spark Pulse Helio Nova Plus Metro Ion Rapid",
     ),
-    PlaceKind.PARKING: Sort(
+    PoiKind.PARKING: Sort(
         say("Parking"), Icon.PARKING, 8, "{} Car Park", "Central North South Market Station Theatre Garden Bridge"
     ),
-    PlaceKind.RESTAURANT: Sort(
+    PoiKind.RESTAURANT: Sort(
         say("Restaurants"),
         Icon.RESTAURANT,
         10,
         "{} Kitchen",
         "Olive Basil Saffron Anchor Lantern Corner Ginger Cedar Bay Fig",
     ),
-    PlaceKind.CAFE: Sort(say("Cafés"), Icon.CAFE, 8, "Café {}", "Horizon Luna Aroma Paloma Bloom Tempo Verde Azur"),
-    PlaceKind.SHOP: Sort(
+    PoiKind.CAFE: Sort(say("Cafés"), Icon.CAFE, 8, "Café {}", "Horizon Luna Aroma Paloma Bloom Tempo Verde Azur"),
+    PoiKind.SHOP: Sort(
         say("Shops"), Icon.SHOP, 8, "{} Market", "Fresh Daily Green Family Golden Corner Union City"
     ),
-    PlaceKind.HOSPITAL: Sort(say("Hospitals"), Icon.HOSPITAL, 3, "{} Hospital", "General University Children's"),
-    PlaceKind.PHARMACY: Sort(
+    PoiKind.HOSPITAL: Sort(say("Hospitals"), Icon.HOSPITAL, 3, "{} Hospital", "General University Children's"),
+    PoiKind.PHARMACY: Sort(
         say("Pharmacies"), Icon.PHARMACY, 6, "{} Pharmacy", "Linden Crown Park Sun Eagle Bridge"
     ),
-    PlaceKind.HOTEL: Sort(
-        say("Hotels"), Icon.HOTEL, 6, "Hotel {}", "Aurora Central Bellevue Meridian Royal Astoria"
-    ),
-    PlaceKind.STATION: Sort(say("Stations"), Icon.STATION, 3, "{} Station", "Central East West"),
-    PlaceKind.MUSEUM: Sort(say("Museums"), Icon.MUSEUM, 4, "{} Museum", "City Science Modern Maritime"),
-    PlaceKind.SCHOOL: Sort(say("Schools"), Icon.SCHOOL, 4, "{} School", "Hill River Oak Meadow"),
-    PlaceKind.PARK: Sort(say("Parks"), Icon.PARK, 4, "{} Park", "Lake Rose Castle Maple"),
-    PlaceKind.GYM: Sort(say("Gyms"), Icon.GYM, 4, "{} Gym", "Iron Active Summit Pace"),
+    PoiKind.HOTEL: Sort(say("Hotels"), Icon.HOTEL, 6, "Hotel {}", "Aurora Central Bellevue Meridian Royal Astoria"),
+    PoiKind.STATION: Sort(say("Stations"), Icon.STATION, 3, "{} Station", "Central East West"),
+    PoiKind.MUSEUM: Sort(say("Museums"), Icon.MUSEUM, 4, "{} Museum", "City Science Modern Maritime"),
+    PoiKind.SCHOOL: Sort(say("Schools"), Icon.SCHOOL, 4, "{} School", "Hill River Oak Meadow"),
+    PoiKind.PARK: Sort(say("Parks"), Icon.PARK, 4, "{} Park", "Lake Rose Castle Maple"),
+    PoiKind.GYM: Sort(say("Gyms"), Icon.GYM, 4, "{} Gym", "Iron Active Summit Pace"),
 }
 """Counts add up to ``PLACES``."""
 
@@ -99,7 +97,7 @@ class Destination:
     """A place."""
 
     name: str
-    kind: PlaceKind
+    kind: PoiKind
     street: str
     edge_id: str
     x_m: float
@@ -138,13 +136,13 @@ class Gazetteer(AppData):
         """The place on that edge of the network."""
         return next((place for place in self.places if place.edge_id == edge_id), None)
 
-    def of(self, kind: PlaceKind) -> tuple[Destination, ...]:
+    def of(self, kind: PoiKind) -> tuple[Destination, ...]:
         return tuple(place for place in self.places if place.kind is kind)
 
     @property
     def favourites(self) -> tuple[str, ...]:
         """Home, work and some streets: what the driver has saved."""
-        own = [place.name for place in self.places if place.kind in (PlaceKind.HOME, PlaceKind.WORK)]
+        own = [place.name for place in self.places if place.kind in (PoiKind.HOME, PoiKind.WORK)]
         return (*own, *self.streets)
 
 
@@ -165,7 +163,7 @@ def atlas(roads: RoadMap, rng: np.random.Generator, on: frozenset[str] | None = 
     )
 
 
-def _names(rng: np.random.Generator) -> list[tuple[PlaceKind, str]]:
+def _names(rng: np.random.Generator) -> list[tuple[PoiKind, str]]:
     """One of each kind in turn, so that a small network has some of all."""
     left = {
         kind: [
@@ -174,7 +172,7 @@ def _names(rng: np.random.Generator) -> list[tuple[PlaceKind, str]]:
         ]
         for kind, sort in SORTS.items()
     }
-    names: list[tuple[PlaceKind, str]] = []
+    names: list[tuple[PoiKind, str]] = []
     while any(left.values()):
         names += [(kind, words.pop()) for kind, words in left.items() if words]
     return names
@@ -191,14 +189,14 @@ def _addresses(roads: RoadMap) -> tuple[int, ...]:
     return tuple(fit or range(len(roads.roads)))
 
 
-def _place(roads: RoadMap, at: int, kind: PlaceKind, name: str, rng: np.random.Generator) -> Destination:
+def _place(roads: RoadMap, at: int, kind: PoiKind, name: str, rng: np.random.Generator) -> Destination:
     road = roads.roads[at]
     x_m, y_m = road.shape_m[len(road.shape_m) // 2]
     return Destination(name, kind, road.name or say("Unnamed road"), road.edge_id, x_m, y_m, _detail(kind, rng))
 
 
-def _detail(kind: PlaceKind, rng: np.random.Generator) -> str:
-    if kind is PlaceKind.CHARGING:
+def _detail(kind: PoiKind, rng: np.random.Generator) -> str:
+    if kind is PoiKind.CHARGING:
         plugs = int(rng.integers(2, 9))
         return say(
             "{power} kW, {free} of {total} free",
@@ -206,7 +204,7 @@ def _detail(kind: PlaceKind, rng: np.random.Generator) -> str:
             free=int(rng.integers(0, plugs + 1)),
             total=plugs,
         )
-    if kind is PlaceKind.PARKING:
+    if kind is PoiKind.PARKING:
         free, zone = int(rng.integers(3, 240)), ZONES[int(rng.integers(10, 45)) % len(ZONES)]
         return say(
             "{zone}: {free} spaces free, {price} an hour",
@@ -214,11 +212,11 @@ def _detail(kind: PlaceKind, rng: np.random.Generator) -> str:
             free=free,
             price=Quantity(f"{PRICES[zone]:.2f}"),
         )
-    if kind in (PlaceKind.HOME, PlaceKind.WORK):
+    if kind in (PoiKind.HOME, PoiKind.WORK):
         return say("Your address")
-    if kind is PlaceKind.HOSPITAL:
+    if kind is PoiKind.HOSPITAL:
         return say("Emergency room, day and night")
     closes = int(rng.integers(17, 24))
-    if kind is PlaceKind.HOTEL:
+    if kind is PoiKind.HOTEL:
         return say("Open day and night")
     return say("Open until {time}", time=f"{closes}:00")

@@ -24,8 +24,8 @@ CAR_TYPE = "automotive_cosim.car"
 """The same, affected by weather."""
 
 
-class IncidentStage:
-    """The stage on which incidents are staged."""
+class IncidentTools:
+    """What stages incidents on the roads around one equipped car."""
 
     def __init__(
         self, sumo: LibSumo, network: Network, surface: Surface, ego_id: str, variable: Iterable[str]
@@ -48,8 +48,8 @@ class IncidentStage:
         self._names = count(1)
         sumo.copy_type(TEMPLATE_TYPE, CAR_TYPE)
 
-    def around(self, ego_id: str, sensor: Sensor) -> IncidentStage:
-        """The stage around another equipped car in the same traffic; signs, detours and closures are the same."""
+    def around(self, ego_id: str, sensor: Sensor) -> IncidentTools:
+        """The same around another equipped car in the same traffic; signs, detours and closures are the same."""
         other = copy(self)
         other.ego_id, other.sensor = ego_id, sensor
         other.script = VehicleScript(self.sumo, ego_id)
