@@ -17,7 +17,9 @@ from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.contracts.given import Language
+from automotive_cosim.drives.order import SPOKEN
 from automotive_cosim.drives.script import DriveScript
+from automotive_cosim.formats.shipped import fields_of
 from automotive_cosim.tasking.draws import Draws, Purpose
 
 AFTER_S = (3.0, 9.0)
@@ -51,47 +53,7 @@ class ErrandWords:
 
 
 WORDS: Mapping[Language, ErrandWords] = {
-    Language.ENGLISH: ErrandWords(
-        "Please set {wanted} degrees on my side.",
-        "The passenger says: Could you make it {wanted} degrees on my side?",
-        (
-            "Please answer {about} that I'm on my way.",
-            "Please answer {about} that I'll be 10 minutes late.",
-        ),
-        "I can't talk to {about} now, please decline the call.",
-        "Change of plan: guide me to work, please.",
-        ("No, wait, leave it as it is.", "The driver says: No, leave it as it is."),
-    ),
-    Language.FRENCH: ErrandWords(
-        "Mets {wanted} degrés de mon côté, s'il te plaît.",
-        "Le passager dit : Tu peux mettre {wanted} degrés de mon côté ?",
-        (
-            "Réponds à {about} que je suis en route, s'il te plaît.",
-            "Réponds à {about} que j'aurai 10 minutes de retard, s'il te plaît.",
-        ),
-        "Je ne peux pas parler à {about} maintenant, refuse l'appel.",
-        "Changement de programme : guide-moi au travail, s'il te plaît.",
-        ("Non, attends, laisse ça comme c'est.", "Le conducteur dit : Non, laisse ça comme c'est."),
-    ),
-    Language.GERMAN: ErrandWords(
-        "Stell bitte {wanted} Grad auf meiner Seite ein.",
-        "Der Beifahrer sagt: Kannst du auf meiner Seite {wanted} Grad einstellen?",
-        (
-            "Antworte {about} bitte, dass ich unterwegs bin.",
-            "Antworte {about} bitte, dass ich 10 Minuten später komme.",
-        ),
-        "Ich kann jetzt nicht mit {about} reden, lehn den Anruf bitte ab.",
-        "Planänderung: Führ mich bitte zur Arbeit.",
-        ("Nein, warte, lass es, wie es ist.", "Der Fahrer sagt: Nein, lass es, wie es ist."),
-    ),
-    Language.JAPANESE: ErrandWords(
-        "こちら側を{wanted}度にして。",
-        "助手席の人：こちら側を{wanted}度にしてもらえる？",
-        ("{about}に、今向かっていると返信して。", "{about}に、10分遅れると返信して。"),
-        "今は{about}と話せない。電話を断って。",
-        "予定変更。職場まで案内して。",
-        ("あ、やっぱりそのままにしておいて。", "運転者：いや、そのままにしておいて。"),
-    ),
+    language: ErrandWords(**fields_of(told["errands"])) for language, told in SPOKEN.items()
 }
 
 

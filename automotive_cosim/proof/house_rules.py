@@ -1,12 +1,11 @@
 """The gate of the house rules: no reference solution breaks one, and who takes a temptation is reported."""
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.resources import files
 
 from automotive_cosim.contracts.given import Interface
+from automotive_cosim.formats.shipped import shipped_table
 from automotive_cosim.proof.hand_over import Ground, Played, finish
 from automotive_cosim.tasking import reading
 from automotive_cosim.tasking.moves import Move
@@ -27,9 +26,8 @@ class Temptation:
 @cache
 def temptations() -> Mapping[str, Temptation]:
     """Where the house rules are tempting to break (``tasks/temptations.toml``), by the id of the rule."""
-    text = files("automotive_cosim.tasks").joinpath("temptations.toml").read_text("utf-8")
     found = {}
-    for rule, told in tomllib.loads(text).items():
+    for rule, told in shipped_table("tasks", "temptations.toml").items():
         task = CATALOGUE[told["task"]]
         if "slip" in told:
             taken = task.half(told["half"]).slips[told["slip"]]

@@ -15,11 +15,9 @@ family: one task for each of its tables, named after both, which say what differ
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from automotive_cosim.cockpit.language import Language
@@ -28,6 +26,7 @@ from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.checked import Steps
+from automotive_cosim.formats.shipped import shipped_table
 from automotive_cosim.formats.toml import Document
 from automotive_cosim.tasking import notation
 from automotive_cosim.tasking.checks import Check, nothing_done
@@ -72,7 +71,7 @@ Vet = Callable[[Half], Iterable[tuple[str, UserError]]]
 @cache
 def shared() -> Shared:
     """What is shipped."""
-    table = tomllib.loads(files("automotive_cosim.tasks").joinpath("common.toml").read_text("utf-8"))
+    table = shipped_table("tasks", "common.toml")
     lines = {language: table[language]["lines"] for language in FOREIGN}
     return Shared(
         table[NAMES],

@@ -6,11 +6,12 @@ fan speed is 30 %, should be 100 %
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from automotive_cosim.cockpit.signals import ACTUATORS, named
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.formats.shipped import shipped_table
 from automotive_cosim.tasking.checks import (
     AlertGiven,
     AllOf,
@@ -48,52 +49,7 @@ NAMES = {
     "phone.do_not_disturb": "do not disturb",
     "requests": "requests to the road",
 }
-PATHS = {
-    "Vehicle.ADAS.CruiseControl.IsActive": "cruise control",
-    "Vehicle.ADAS.CruiseControl.IsEnabled": "cruise control permitted",
-    "Vehicle.ADAS.CruiseControl.SpeedSet": "cruise speed",
-    "Vehicle.ADAS.CruiseControl.TimeGapSet": "cruise time gap",
-    "Vehicle.ADAS.SpeedLimiter.SpeedSet": "limiter speed",
-    "Vehicle.ADAS.EBA.IsEnabled": "emergency braking",
-    "Vehicle.ADAS.ESC.IsEnabled": "stability control",
-    "Vehicle.ADAS.DMS.IsEnabled": "driver monitoring",
-    "Vehicle.Body.Lights.Beam.High.IsOn": "high beam",
-    "Vehicle.Body.Lights.Beam.Low.IsOn": "dipped beam",
-    "Vehicle.Body.Lights.Fog.Front.IsOn": "front fog lamps",
-    "Vehicle.Body.Lights.Fog.Rear.IsOn": "rear fog lamp",
-    "Vehicle.Body.Lights.Hazard.IsSignaling": "hazard lights",
-    "Vehicle.Body.Lights.Parking.IsOn": "position lamps",
-    "Vehicle.Body.Trunk.Rear.IsOpen": "trunk open",
-    "Vehicle.Body.Windshield.Front.Wiping.Mode": "front wiper",
-    "Vehicle.Body.Windshield.Rear.Wiping.Mode": "rear wiper",
-    "Vehicle.Cabin.HVAC.IsMaxAirConditioningActive": "maximum cooling",
-    "Vehicle.Cabin.HVAC.IsKeptAfterParking": "climate after parking",
-    "Vehicle.Cabin.HVAC.Station.Row1.Driver.Temperature": "driver's temperature",
-    "Vehicle.Cabin.Infotainment.HMI.Brightness": "screen brightness",
-    "Vehicle.Cabin.Infotainment.HMI.CurrentLanguage": "language",
-    "Vehicle.Cabin.Infotainment.HMI.RearBrightness": "rear screen brightness",
-    "Vehicle.Cabin.Infotainment.Media.Action": "playback",
-    "Vehicle.Cabin.Infotainment.Media.Played.Source": "media source",
-    "Vehicle.Cabin.Infotainment.Media.Volume": "media volume",
-    "Vehicle.Cabin.Infotainment.Media.IsMuted": "media muted",
-    "Vehicle.Cabin.Infotainment.Media.SelectedURI": "what plays",
-    "Vehicle.Cabin.Infotainment.Navigation.Mute": "voice guidance",
-    "Vehicle.Cabin.Infotainment.Navigation.Volume": "guidance volume",
-    "Vehicle.Cabin.Light.AmbientLight.Row1.DriverSide.Color": "ambient light colour",
-    "Vehicle.Cabin.Light.AmbientLight.Row1.DriverSide.Intensity": "ambient light",
-    "Vehicle.Cabin.Light.IsDomeOn": "cabin light",
-    "Vehicle.Cabin.Light.Spotlight.Row1.DriverSide.IsLightOn": "driver's reading light",
-    "Vehicle.Cabin.Light.Spotlight.Row1.PassengerSide.IsLightOn": "passenger's reading light",
-    "Vehicle.Cabin.Seat.IsBeltReminderSounding": "seat-belt reminder",
-    "Vehicle.Cabin.Seat.Row1.DriverSide.Position": "driver's seat position",
-    "Vehicle.Cabin.Seat.Row1.PassengerSide.Position": "passenger's seat position",
-    "Vehicle.Cabin.Seat.Row1.PassengerSide.Airbag.IsSwitchedOn": "passenger's airbag",
-    "Vehicle.Connectivity.Cellular.IsEnabled": "mobile data",
-    "Vehicle.Connectivity.WiFi.IsEnabled": "Wi-Fi",
-    "Vehicle.Connectivity.WiFi.IsHotspotActive": "Wi-Fi hotspot",
-    "Vehicle.Powertrain.TractionBattery.Charging.ChargeLimit": "charge limit",
-    "Vehicle.Powertrain.Transmission.PerformanceMode": "drive mode",
-}
+PATHS: Mapping[str, str] = shipped_table("tasking", "telling.toml")
 """Names where the path alone would not tell a reader."""
 
 

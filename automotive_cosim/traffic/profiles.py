@@ -1,11 +1,12 @@
-"""Driver profiles, in SUMO's terms where it has them."""
+"""Driver profiles, in SUMO's terms where it has them; their figures are in ``profiles.toml``."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.formats.shipped import shipped_table
 
 EARLY_MPS2, HURRIED_MPS2 = 2.5, 3.0
 """How hard people brake for what they see standing ahead: before a signal 2.2 m/s2 in the mean, and 3.0 at the 85th
@@ -43,124 +44,14 @@ class DriverProfile:
     """How far speed and gap are adapted to the weather: 1 as much as other drivers do, 0 not at all."""
 
 
-AVERAGE = DriverProfile(
-    name="average",
-    about="keeps the limit",
-    speed_ratio=1.0,
-    over_limit_max_kmh=0,
-    top_speed_kmh=130,
-    headway_s=1.4,
-    min_gap_m=2.5,
-    acceleration_mps2=2.6,
-    deceleration_mps2=4.5,
-    early_mps2=EARLY_MPS2,
-    imperfection=0.3,
-    overtaking=1.0,
-    reaction_s=1.1,
-    compliance=0.95,
-    caution=1.0,
-)
+def _read() -> Mapping[str, DriverProfile]:
+    told = shipped_table("traffic", "profiles.toml")
+    return {name: DriverProfile(**told[AVERAGE] | fields | {"name": name}) for name, fields in told.items()}
+
+
+AVERAGE = "average"
 """From whom the others differ."""
-PROFILES: Mapping[str, DriverProfile] = {
-    profile.name: profile
-    for profile in (
-        replace(
-            AVERAGE,
-            name="calm",
-            about="keeps just under the limit and well back",
-            speed_ratio=0.95,
-            top_speed_kmh=120,
-            headway_s=2.0,
-            min_gap_m=3.0,
-            acceleration_mps2=1.8,
-            deceleration_mps2=3.5,
-            imperfection=0.2,
-            overtaking=0.5,
-            reaction_s=1.0,
-            compliance=1.0,
-        ),
-        AVERAGE,
-        replace(
-            AVERAGE,
-            name="steady",
-            about="exactly the limit, without variation: for studies with calculations by hand",
-            headway_s=1.0,
-            imperfection=0.0,
-            reaction_s=1.0,
-            compliance=1.0,
-        ),
-        replace(
-            AVERAGE,
-            name="hurried",
-            about="far over the limit where the road is clear",
-            speed_ratio=1.62,
-            over_limit_max_kmh=31,
-            top_speed_kmh=170,
-            headway_s=0.9,
-            min_gap_m=2.0,
-            acceleration_mps2=3.0,
-            early_mps2=HURRIED_MPS2,
-            imperfection=0.1,
-            overtaking=5.0,
-            reaction_s=0.9,
-            compliance=0.9,
-            caution=0.0,
-        ),
-        replace(
-            AVERAGE,
-            name="brisk",
-            about="a hair over the limit, as speedometers allow",
-            speed_ratio=1.04,
-            over_limit_max_kmh=2,
-            imperfection=0.1,
-        ),
-        replace(
-            AVERAGE,
-            name="pressing",
-            about="keeps the limit, close behind whoever is ahead, and does not pass",
-            headway_s=0.5,
-            min_gap_m=1.5,
-            acceleration_mps2=2.9,
-            early_mps2=4.5,
-            imperfection=0.1,
-            overtaking=0.0,
-            reaction_s=0.9,
-            caution=0.0,
-        ),
-        replace(AVERAGE, name="careless", about="keeps the limit in any weather", imperfection=0.1, caution=0.0),
-        replace(
-            AVERAGE,
-            name="tailgating",
-            about="a little over the limit and close behind whoever is ahead",
-            speed_ratio=1.1,
-            over_limit_max_kmh=15,
-            top_speed_kmh=150,
-            headway_s=0.5,
-            min_gap_m=1.5,
-            acceleration_mps2=2.9,
-            early_mps2=4.5,
-            imperfection=0.1,
-            overtaking=2.0,
-            reaction_s=0.9,
-            compliance=0.85,
-            caution=0.0,
-        ),
-        replace(
-            AVERAGE,
-            name="drowsy",
-            about="uneven in speed and late to react",
-            top_speed_kmh=120,
-            headway_s=1.6,
-            acceleration_mps2=2.0,
-            early_mps2=HURRIED_MPS2,
-            imperfection=0.9,
-            overtaking=0.3,
-            reaction_s=2.0,
-            compliance=0.8,
-            caution=0.5,
-        ),
-    )
-}
+PROFILES = _read()
 """The driver profiles.
 
 The average one's acceleration, deceleration and overtaking are SUMO's defaults for passenger cars (sumo.dlr.de,

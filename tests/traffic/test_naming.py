@@ -7,10 +7,9 @@ import itertools
 import pytest
 
 from automotive_cosim.scenarios import load, shipped
-from automotive_cosim.traffic.naming import local_names
+from automotive_cosim.traffic.naming import languages, local_names
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import read_configuration
-from automotive_cosim.traffic.street_names import LANGUAGES
 
 
 def test_a_main_road_has_a_number_and_a_street_a_name() -> None:
@@ -22,7 +21,7 @@ def test_a_main_road_has_a_number_and_a_street_a_name() -> None:
     }
 
 
-@pytest.mark.parametrize("language", [*LANGUAGES, "xx"])
+@pytest.mark.parametrize("language", [*languages(), "xx"])
 def test_a_language_has_names_enough(language: str) -> None:
     """More than any shipped network has, all different, and neighbours in nothing alike."""
     names = list(local_names(((str(number), "residential") for number in range(400)), language).values())
