@@ -110,45 +110,26 @@ def test_the_token_is_taken_from_the_address_or_the_header() -> None:
         assert status({"host": name, "origin": f"http://{name}"} | BEARER) == 200
 
 
-@over(["", "token=", "token=the-toke", "token=the-token2", "token=%ff%fe", "TOKEN=the-token", "token=the%00-token"])
-def test_another_token_in_the_address_is_refused(query):
-    assert status({"host": OWN}, query) == 403
+REFUSED = (
+    *((403, {"host": OWN}, query, "/mcp") for query in ("", "token=", "token=the-toke", "token=the-token2",
+      "token=%ff%fe", "TOKEN=the-token", "token=the%00-token")),
+    *((403, {"host": OWN, "authorization": given}, "", "/mcp") for given in ("", "Bearer", "Bearer ",
+      "Bearer wrong", "Basic the-token", "the-token", "Bearer \xff", "bearer the-token x")),
+    *((421, {"host": name} | BEARER, "", "/mcp") for name in ("", "evil.example", f"evil.example:{PORT}",
+      "127.0.0.1", "127.0.0.1:80", f"127.0.0.1.evil.example:{PORT}", f"{OWN}@evil.example", f"evil.example#{OWN}",
+      f"10.0.0.1:{PORT}", "127.0.0.1:x")),
+    (421, BEARER, "", "/mcp"),
+    *((403, {"host": OWN, "origin": origin} | BEARER, "", "/mcp") for origin in ("null", "http://evil.example",
+      f"https://127.0.0.1:{PORT}", "http://127.0.0.1:80", f"http://localhost:{PORT}", "")),
+    *((403, {"host": OWN}, "", path) for path in ("/", "/mcp", "/mcp/", "/docs", "//mcp")),
+)  # fmt: skip
+"""The answer to a request with another token in the address or the header; with the token, under a name that is not
+the server's, without one, or from another site's page; and to any path without the token."""
 
 
-@over(
-    ["", "Bearer", "Bearer ", "Bearer wrong", "Basic the-token", "the-token", "Bearer \xff", "bearer the-token x"]
-)
-def test_another_token_in_the_header_is_refused(given):
-    assert status({"host": OWN, "authorization": given}) == 403
-
-
-@over(["", "evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:80", f"127.0.0.1.evil.example:{PORT}",
-       f"{OWN}@evil.example", f"evil.example#{OWN}", f"10.0.0.1:{PORT}", "127.0.0.1:x"])  # fmt: skip
-def test_a_name_that_is_not_the_servers_is_refused_with_the_token_too(name):
-    assert status({"host": name} | BEARER) == 421
-
-
-def test_a_request_without_a_name_is_refused() -> None:
-    assert status(BEARER) == 421
-
-
-@over(
-    [
-        "null",
-        "http://evil.example",
-        f"https://127.0.0.1:{PORT}",
-        "http://127.0.0.1:80",
-        f"http://localhost:{PORT}",
-        "",
-    ]
-)
-def test_another_sites_page_is_refused_with_the_token_too(origin):
-    assert status({"host": OWN, "origin": origin} | BEARER) == 403
-
-
-@over(["/", "/mcp", "/mcp/", "/docs", "//mcp"])
-def test_no_path_does_without_the_token(path):
-    assert status({"host": OWN}, path=path) == 403
+@over(REFUSED)
+def test_who_does_not_belong_here_is_refused(code: int, headers: Mapping[str, str], query: str, path: str) -> None:
+    assert status(headers, query, path=path) == code
 
 
 def test_one_that_listens_everywhere_is_asked_by_any_address_but_by_no_foreign_name() -> None:

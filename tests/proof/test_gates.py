@@ -1,5 +1,6 @@
 """Each gate catches the fault it is there for, planted in a task that is sound otherwise."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import timedelta
@@ -51,6 +52,7 @@ from automotive_cosim.tasking.triggers import (
     standing,
 )
 from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
 from tests.written import COMFORT, ON_THE_WAY, asked
 
 SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
@@ -135,19 +137,23 @@ def test_a_sound_start_passes(ground, simulations, gate):
     assert list(getattr(gates, gate)(ground(SOUND), simulations)) == []
 
 
-def test_an_expert_who_fails_is_seen(ground):
-    (wrong,) = gates.oracle(ground(changed(moves=(Open("climate"), Tap("hvac.passenger_seat_heating")))))
-    assert "goal: not reached" in wrong
+PLANTED = (
+    ("oracle", changed(moves=(Open("climate"), Tap("hvac.passenger_seat_heating"))), "goal: not reached"),
+    ("oracle", changed(moves=(Tap("hvac.no_such_widget"),)), "hvac.no_such_widget is not on the screen"),
+    ("oracle", changed(ways=((Open("climate"), Tap("hvac.sync")),)), "^solution 1"),
+    ("oracle", changed(deadline=replace(COMFORT, seconds=2.5)), "of 2.5 s"),
+    ("start", changed(goal=SignalIs(SEAT.DRIVER_HEATING, (0.0,))), "^holds already"),
+    ("start", replace(SOUND, templates=tuple(f"{words} (element 12)" for words in SAYS)), "by its number"),
+    ("prefix", changed(moves=(*SOUND.first.moves, Open("home"))), "^complete after 2 actions succeeds$"),
+)
+"""An expert who fails, finds nothing to tap, has a second way that fails, or is too slow; a goal that holds at the
+start, a widget named by its number, a way longer than need be."""
 
 
-def test_an_expert_who_finds_nothing_to_tap_is_seen(ground):
-    (wrong,) = gates.oracle(ground(changed(moves=(Tap("hvac.no_such_widget"),))))
-    assert "hvac.no_such_widget is not on the screen" in wrong
-
-
-def test_a_second_way_that_fails_is_seen(ground):
-    (wrong,) = gates.oracle(ground(changed(ways=((Open("climate"), Tap("hvac.sync")),))))
-    assert wrong.startswith("solution 1")
+@over(PLANTED)
+def test_a_planted_fault_is_seen(gate, task, told, ground):
+    (wrong,) = getattr(gates, gate)(ground(task))
+    assert re.search(told, wrong)
 
 
 def test_a_slip_that_succeeds_or_cannot_be_made_is_seen(ground):
@@ -157,28 +163,6 @@ def test_a_slip_that_succeeds_or_cannot_be_made_is_seen(ground):
     wins, stuck = gates.slip(ground(changed(slips=(missed, right, nowhere))))
     assert wins == "slip 1 succeeds"
     assert stuck.startswith("slip 2 cannot be made: hvac.no_such_widget")
-
-
-def test_an_expert_too_slow_is_seen(ground):
-    hasty = replace(COMFORT, seconds=2.5)
-    (wrong,) = gates.oracle(ground(changed(deadline=hasty)))
-    assert "of 2.5 s" in wrong
-
-
-def test_a_goal_that_holds_at_the_start_is_seen(ground):
-    (wrong,) = gates.start(ground(changed(goal=SignalIs(SEAT.DRIVER_HEATING, (0.0,)))))
-    assert wrong.startswith("holds already")
-
-
-def test_a_widget_named_by_its_number_is_seen(ground):
-    (wrong,) = gates.start(ground(replace(SOUND, templates=tuple(f"{words} (element 12)" for words in SAYS))))
-    assert "by its number" in wrong
-
-
-def test_a_way_longer_than_need_be_is_seen(ground):
-    moves = (Open("climate"), Tap("hvac.driver_seat_heating"), Open("home"))
-    (wrong,) = gates.prefix(ground(changed(moves=moves)))
-    assert wrong == "complete after 2 actions succeeds"
 
 
 def test_a_deadline_that_does_not_count_is_seen(ground, monkeypatch):

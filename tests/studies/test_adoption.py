@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.contracts import DrivingState, Observation, Reroute, RouteOption, SlowDown
-from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.errors import UserError
 from automotive_cosim.run.executor import tried
 from automotive_cosim.run.fleet_record import read_fleet
 from automotive_cosim.run.row import as_json
@@ -33,7 +33,6 @@ from automotive_cosim.studies.adoption.page import answer, charts, effects, flee
 from automotive_cosim.studies.adoption.served import cars, shares
 from automotive_cosim.studies.calls import chosen, town
 from automotive_cosim.studies.calls.town import CarTrip
-from automotive_cosim.studies.plan import plan_of
 from automotive_cosim.traffic.fork import Forked
 from tests.traffic.in_process import InProcess
 
@@ -94,27 +93,6 @@ def test_warnings_of_one_kind_on_one_road_within_a_minute_are_of_one_hazard() ->
     assert said.hazards == 3
     said.warned.append(("traffic", "a", 119.0, "3"))
     assert said.hazards == 4
-
-
-@pytest.mark.parametrize(
-    ("changed", "told"),
-    [
-        ({"agent": "best"}, "best"),
-        ({"agent": "nobody"}, "nobody"),
-        ({"shares": (5.0, 5.0)}, "--shares"),
-        ({"shares": (101.0,)}, "--shares"),
-        ({"driver": "averag"}, "average"),
-        ({"incidents": ("breakdown edge=nowhere position_m=1",)}, "nowhere"),
-    ],
-)
-def test_what_cannot_be_run_is_refused_in_a_line(changed: dict[str, object], told: str) -> None:
-    with pytest.raises(CosimError, match=told) as refused:
-        replace(PLAN, **changed).check()  # type: ignore[arg-type]
-    assert "\n" not in str(refused.value)
-
-
-def test_a_plan_is_read_back() -> None:
-    assert plan_of(AdoptionPlan, PLAN.as_json()) == PLAN
 
 
 def trips_with(warm: Forked, share: float, seconds: float) -> Mapping[str, CarTrip]:

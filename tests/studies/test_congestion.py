@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.batches import ProgressView
 from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.results import report
-from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.incidents import EgoIncident
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.studies import load_study
@@ -35,7 +35,6 @@ from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, Fl
 from automotive_cosim.studies.congestion.seed import CONGESTION
 from automotive_cosim.studies.congestion.tables import emissions, whole, worst
 from automotive_cosim.studies.congestion.words import PHRASES, name_of
-from automotive_cosim.studies.plan import plan_of
 from automotive_cosim.studies.versions import pairs
 
 from .conftest import Draw
@@ -168,31 +167,6 @@ def test_sumos_outputs_are_read_against_the_usual_limit(tmp_path: Path) -> None:
     primary = found[1]
     assert (primary.flow.time_s, primary.flow.distance_m, primary.flow.standing_s) == (120.0, 600.0, 5.0)
     assert (primary.queue_m, primary.longest_m) == (3.0, 60.0), "the mean of thirty samples"
-
-
-@pytest.mark.parametrize(
-    ("wrong", "told"),
-    [
-        ({"scenario": "grit"}, "grid"),
-        ({"measures": ("closure edge=zz",)}, "edge for cars in --measure"),
-        ({"measures": ("closures edge=c1c2",)}, "did you mean 'closure'"),
-        ({"measures": ("advice share=2",)}, "share is 2"),
-        ({"measures": ("signals control=green",)}, "control"),
-        ({"measures": ("emergency",)}, "needs the ego"),
-        ({"measures": ("advice share=1", "advice share=1")}, "twice"),
-        ({"incidents": ("advice share=1",)}, "kind in --incident"),
-        ({"minutes": 7.0}, "multiple of 5"),
-        ({"minutes": 10.0, "demand": (1.0, 2.0, 1.0)}, "--demand has 3 periods"),
-        ({"seeds": ()}, "--seeds is empty"),
-    ],
-)
-def test_a_plan_that_cannot_be_run_is_refused(wrong: dict[str, object], told: str) -> None:
-    with pytest.raises(CosimError, match=told):
-        replace(CongestionPlan("grid"), **wrong).check()  # type: ignore[arg-type]
-
-
-def test_plans_come_back_from_their_manifest() -> None:
-    assert plan_of(CongestionPlan, PLAN.as_json()) == PLAN
 
 
 CARS = """<routes>

@@ -22,7 +22,6 @@ from automotive_cosim.studies.days.days import (
 )
 from automotive_cosim.studies.days.page import answer, charts, tables, warnings
 from automotive_cosim.studies.equilibrium.gap import DrivenTrip, EdgeTimes
-from automotive_cosim.studies.plan import plan_of
 
 Draw = Callable[..., Path]
 PLAN = DaysPlan("grid", shares=(0.0, 1.0), seeds=(0, 1))
@@ -110,22 +109,6 @@ def test_what_is_remembered_is_smoothed() -> None:
     memory = times(100.0, "a", "b").blended(times(200.0, "a", "b", "c"), 0.75)
     assert memory.at("b", 0) == pytest.approx(0.75 * 100 + 0.25 * 200)
     assert memory.at("c", 0) == pytest.approx(200.0), "what was never driven before is taken as it is"
-
-
-@pytest.mark.parametrize(
-    ("wrong", "told"),
-    [
-        ({"scenario": "grit"}, "grid"),
-        ({"shares": (0.5, 0.5)}, "twice"),
-        ({"shares": (1.5,)}, "--shares is 1.5"),
-        ({"memory": 2.0}, "--memory is 2"),
-        ({"days": 1}, "--days is 1"),
-    ],
-)
-def test_a_plan_that_cannot_be_run_is_refused(wrong: dict[str, object], told: str) -> None:
-    with pytest.raises(CosimError, match=told):
-        replace(PLAN, **wrong).check()  # type: ignore[arg-type]
-    assert plan_of(DaysPlan, PLAN.as_json()) == PLAN
 
 
 CARS = """<routes>

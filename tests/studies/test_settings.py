@@ -17,7 +17,7 @@ COMMANDS: tuple[tuple[str, type, set[str]], ...] = (
     ("scenarios calibrate", CalibrationOptions, {"seed"}),
     ("study reroute", RerouteSettings, {"scenario", "warm_up_s", *IN_PYTHON}),
     ("study congestion", CongestionSettings, {"redraw", "step_s"}),
-    ("study days", DaysSettings, set()),
+    ("study days", DaysSettings, {"lag"}),
 )
 
 

@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from automotive_cosim.contracts import EgoEnd, Json
+from automotive_cosim.contracts import EgoEnd
 from automotive_cosim.errors import UserError
 from automotive_cosim.studies.calls.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.studies.gridlock import gridlock
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
-from automotive_cosim.studies.plan import plan_of
 from automotive_cosim.studies.reroute import compare, policies
 from automotive_cosim.studies.reroute.compare import Future
 from automotive_cosim.studies.reroute.everyone import gini, spread
@@ -480,50 +479,6 @@ def test_many_cars_that_jam_leave_the_decision_itself_in() -> None:
 
 def ends(made: Future, at_s: float) -> Future:
     return replace(made, last=replace(made.last, time_s=at_s, end=EgoEnd.ARRIVED))
-
-
-@pytest.mark.parametrize(
-    ("wrong", "word"),
-    [
-        ({"scenario": "pari_centre"}, "paris_centre"),
-        ({"trips": ("jamm",)}, "jam"),
-        ({"via": "stop"}, "no via named"),
-        ({"incidents": ("closure edge=pont_neuff.1",)}, "edge for cars in --incident"),
-        ({"policies": ("sometimes",)}, "policy"),
-        ({"policies": ()}, "--policies is empty"),
-        ({"shares": (1.5,)}, "--shares is 1.5"),
-        ({"ages_s": (-1.0,)}, "--ages"),
-        ({"ages_s": (5000.0,)}, "--ages"),
-        ({"compliance": (2.0,)}, "--compliance is 2"),
-        ({"compliance": ()}, "--compliance is empty"),
-        ({"compliance": (0.5, 0.5)}, "twice"),
-        ({"departures_s": (0.0, 0.0)}, "twice"),
-        ({"step_s": 5.0}, "--step"),
-        ({"policies": ("agent:asurado",)}, "asurada"),
-        ({"policies": ("agent:asurada/nothing",)}, "nothing"),
-        ({"policies": ("agent:human",)}, "person"),
-        ({"replicates": 0}, "--replicates is 0"),
-        ({"replicates": "many"}, "'auto'"),
-        ({"together": (1.5,)}, "--together"),
-        ({"together": (0.5, 0.5)}, "twice"),
-        ({"arrived": 0.1}, "arrived"),
-        ({"ego_class": "Energy default"}, "emission class"),
-    ],
-)
-def test_a_plan_that_cannot_be_run_is_refused(wrong: Json, word: str) -> None:
-    with pytest.raises(UserError, match=word):
-        replace(StudyPlan("paris_centre"), **wrong).check()
-
-
-def test_plans_come_back_from_their_manifest() -> None:
-    plan = StudyPlan("grid", shares=(0.0, 1.0), half_width_s=3.0, policies=("never", "agent:asurada"))
-    assert plan_of(StudyPlan, plan.as_json()) == plan
-    auto = replace(plan, replicates="auto", together=(0.0, 0.5))
-    assert plan_of(StudyPlan, auto.as_json()) == auto
-    assert (auto.draws.start, auto.draws.stop) == (4, 14)
-    assert [replace(plan, replicates=count).draws.stop for count in (1, 4)] == [0, 3]
-    with pytest.raises(UserError, match="no reroute study"):
-        plan_of(StudyPlan, {"agents": ["oracle"]})
 
 
 def test_drives_have_names_of_their_own_and_the_share_draws_nothing() -> None:

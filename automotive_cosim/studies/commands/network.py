@@ -44,7 +44,7 @@ def congestion(
     _run(plan, CONGESTION, "seeds", out, settings, as_json=as_json, about=about)
 
 
-@takes(DaysSettings)
+@takes(DaysSettings, but=("lag",))
 @takes(ExecutorSettings)
 def days(
     out: StudyFolder = None,
@@ -63,7 +63,7 @@ def days(
     _run(plan, DAYS, "shares and seeds", out, settings, as_json=as_json)
 
 
-@takes(AdoptionSettings, but=("emissions", *IN_PYTHON))
+@takes(AdoptionSettings, but=("emissions", "driver", "every_s", *IN_PYTHON))
 @takes(ExecutorSettings)
 def adoption(
     out: StudyFolder = None,

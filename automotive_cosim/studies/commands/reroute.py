@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.reroute.rows import TripRow
 
 
-IN_PYTHON = ("limit_s", "agent_steps", "every_s", "placebo_every", "arrived", "via", "ego_class")
+IN_PYTHON = ("redraw", "limit_s", "agent_steps", "every_s", "placebo_every", "arrived", "via", "ego_class")
 """What only a ``StudyPlan`` of one's own sets."""
 
 
