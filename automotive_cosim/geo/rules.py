@@ -10,6 +10,7 @@ from functools import cached_property
 
 import shapely
 
+from automotive_cosim.formats.shipped import shipped_table
 from automotive_cosim.geo.rulefacts import RuleFacts, Test, all_hold
 
 Value = float | str
@@ -28,39 +29,14 @@ class Status(StrEnum):
     """Known to be unsettled: pending, annulled or contradictory."""
 
 
-TOPICS = {
-    "limit": "Default limit",
-    "advisory_limit": "Advised speed",
-    "dipped_beam": "Dipped beam",
-    "daytime_lamps": "Daytime lamps",
-    "high_beam": "High beam",
-    "front_fog": "Front fog lamps",
-    "rear_fog": "Rear fog lamp",
-    "hazard_lights": "Hazard lights",
-    "horn": "Horn",
-    "following_distance": "Following distance",
-    "phone": "Phone in hand",
-    "seat_belts": "Seat belts",
-    "screens": "Screens",
-    "camera_warner": "Speed camera warners",
-    "emergency_corridor": "Emergency corridor",
-    "yield_emergency": "Emergency vehicles",
-    "move_over": "Passing a stopped vehicle",
-    "turn_on_red": "Turning on red",
-    "bus_lane": "Bus lanes",
-    "through_traffic": "Through traffic",
-    "low_emission": "Low-emission zone",
-    "school_zone": "School zones",
-    "toll": "Tolls",
-    "winter_tyres": "Winter equipment",
-    "studs": "Studded tyres",
-    "idling": "Engine at a standstill",
-    "alcohol": "Blood alcohol limit",
-    "heat": "Custom when hot",
-    "cold": "Custom when cold",
-}
+_TOPICS = shipped_table("geo", "topics.toml")
+TOPICS: Mapping[str, str] = {topic: told["title"] for topic, told in _TOPICS.items()}
 """Every topic of rules, and how the context prints it, in the context's order. ``heat`` and ``cold`` are customs of
 drivers there, with ``law = "custom"``."""
+ASKED: Mapping[str, frozenset[str]] = {
+    topic: frozenset(told.get("asked", "").split()) for topic, told in _TOPICS.items()
+}
+"""The words that ask for a topic."""
 
 ANSWERS = frozenset(("required", "allowed", "forbidden", "not_required", "advised", "applies"))
 """Values of a rule other than a number with a unit; a limit may also be ``none``."""

@@ -17,7 +17,7 @@ from typing import Protocol
 from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, IncidentKind, Sight
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.reckoning import Roads, reckon
-from automotive_cosim.geo.rules import TOPICS
+from automotive_cosim.geo.rules import ASKED, TOPICS
 from automotive_cosim.geo.text import amount_of_speed, position
 from automotive_cosim.geo.weather import visibility_class
 
@@ -344,34 +344,11 @@ _LAMPS = {
     "rear_fog": _set("rear fog"),
     "hazard_lights": _set("hazard"),
 }
-_TOPIC_WORDS = {
-    "limit": _set("limit limits speed"),
-    "advisory_limit": _set("limit limits speed advisory advised"),
-    "horn": _set("horn honk honking"),
-    "following_distance": _set("distance following gap headway"),
-    "phone": _set("phone phones mobile"),
-    "seat_belts": _set("belt belts buckle"),
-    "screens": _set("screen screens video display"),
-    "camera_warner": _set("camera cameras radar warner warners detector"),
-    "emergency_corridor": _set("corridor ambulance"),
-    "yield_emergency": _set("emergency ambulance yield"),
-    "move_over": _set("breakdown stopped"),
-    "turn_on_red": _set("red"),
-    "bus_lane": _set("bus"),
-    "through_traffic": _set("through"),
-    "low_emission": _set("emission emissions sticker"),
-    "school_zone": _set("school schools children"),
-    "toll": _set("toll tolls vignette"),
-    "winter_tyres": _set("winter tyre tyres chains"),
-    "studs": _set("stud studs studded"),
-    "idling": _set("idle idling engine"),
-    "alcohol": _set("alcohol drink drinking"),
-}
 """The words that match a rule's topic; those of ``_LAMPS`` count only together with a word for a lamp."""
 
 
 def _topics(asked: frozenset[str]) -> frozenset[str]:
-    found = {topic for topic, words in _TOPIC_WORDS.items() if asked & words}
+    found = {topic for topic, words in ASKED.items() if asked & words}
     if asked & _LAMP_WORDS:
         # "rear fog lamp" shares two words with the rear fog lamp's, one with the front one's.
         shared = {topic: len(asked & words) for topic, words in _LAMPS.items()}

@@ -60,6 +60,7 @@ class Consumption:
     """What one vehicle has emitted and consumed since it entered, by SUMO's model for its emission class."""
 
     emission_class: str
+    """SUMO's name, as ``HBEFA4/PC_petrol_Euro-4``."""
     co2_g: float
     nox_g: float
     fuel_g: float

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from automotive_cosim.run.row import InColumns, JobRow
+from automotive_cosim.studies.calls.accounts import Consumption
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,18 +68,10 @@ class FlowState:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Emitted:
+class Emitted(Consumption):
     """What the vehicles of one emission class emitted and consumed in one period of the demand."""
 
     period: int
-    emission_class: str
-    """SUMO's name, as ``HBEFA4/PC_petrol_Euro-4``."""
-    co2_g: float
-    nox_g: float
-    fuel_g: float
-    energy_wh: float
-    noise_s: float
-    """Sound energy, as seconds of a car at 50 km/h (``calls.accounts.LOUD_DB``)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -129,15 +129,5 @@ def _emitted(plan: CongestionPlan, summaries: Sequence[FlowSummary]) -> Iterator
         before, after = (summaries[number * each_s].consumed for number in (period, period + 1))
         for name, (_, *sums) in sorted(after.items()):
             _, *earlier = before.get(name, (0, 0.0, 0.0, 0.0, 0.0, 0.0))
-            co2_g, nox_g, fuel_g, energy_wh, noise_s = (
-                round(one - two, 3) for one, two in zip(sums, earlier, strict=True)
-            )
-            yield Emitted(
-                period=period,
-                emission_class=name,
-                co2_g=co2_g,
-                nox_g=nox_g,
-                fuel_g=fuel_g,
-                energy_wh=energy_wh,
-                noise_s=noise_s,
-            )
+            own = (round(one - two, 3) for one, two in zip(sums, earlier, strict=True))
+            yield Emitted(name, *own, period=period)

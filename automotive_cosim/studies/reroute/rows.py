@@ -8,7 +8,7 @@ from statistics import fmean
 from typing import Annotated, Any
 
 from automotive_cosim.run.row import InColumns, JobRow
-from automotive_cosim.studies.calls.accounts import TrafficSummary
+from automotive_cosim.studies.calls.accounts import Consumption, TrafficSummary
 from automotive_cosim.studies.calls.chance import Fresh
 
 
@@ -83,18 +83,13 @@ NOBODY = OthersTotals(count=0, gain_s=0.0, changed=0, unfinished_stay=0, unfinis
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FleetClass:
-    """What the vehicles of one emission class save that were present and arrived in both futures."""
+class FleetClass(Consumption):
+    """What the vehicles of one emission class save that were present and arrived in both futures.
 
-    emission_class: str
-    """SUMO's name of the class; the ego is a class of its own, ``ego: `` and its name."""
+    The ego is a class of its own, ``ego: `` and its name.
+    """
+
     count: int
-    co2_g: float
-    nox_g: float
-    fuel_g: float
-    energy_wh: float
-    noise_s: float = 0.0
-    """Sound energy, as seconds of a car at 50 km/h (``calls.accounts.LOUD_DB``)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
