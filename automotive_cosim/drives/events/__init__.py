@@ -8,47 +8,25 @@ speed, light, weather, road, car, people, border, errands
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from automotive_cosim.drives.events import border, car, errands, light, people, road, speed, weather
 from automotive_cosim.drives.events.base import DriveAct, EventKind, Sighting
 from automotive_cosim.drives.events.tracker import DriveEvent, Tracker
 
-KINDS: Mapping[str, EventKind] = {
-    kind.name: kind
-    for kind in (
-        speed.OverLimit(),
-        speed.LimitFalls(),
-        speed.SchoolHours(),
-        speed.WeatherSpeed(),
-        light.LampsMissing(),
-        light.HighBeam(),
-        light.FogLamps(),
-        weather.GlassFogs(),
-        weather.Wipers(),
-        weather.Slippery(),
-        road.TunnelAhead(),
-        road.JamTail(),
-        road.RearEnd(),
-        road.BreakdownAhead(),
-        road.RoadworksAhead(),
-        road.BlueLight(),
-        road.Corridor(),
-        road.LeaderClose(),
-        road.LeaderBrakes(),
-        road.TractorAhead(),
-        car.Belt(),
-        car.FlapOpen(),
-        car.Tyre(),
-        car.RangeShort(),
-        people.Fatigue(),
-        people.PhoneUse(),
-        people.LeftBehind(),
-        border.LimitUnits(),
-        border.RuleChange(),
-        *errands.ERRANDS,
-    )
-}
+SUBJECTS = (speed, light, weather, road, car, people, border, errands)
+
+
+def _kinds() -> Iterator[EventKind]:
+    """One of each class that has a name, in the order in which they are written."""
+    for subject in SUBJECTS:
+        for found in vars(subject).values():
+            is_own = isinstance(found, type) and found.__module__ == subject.__name__
+            if is_own and issubclass(found, EventKind) and "name" in vars(found):
+                yield found()
+
+
+KINDS: Mapping[str, EventKind] = {kind.name: kind for kind in _kinds()}
 """Every kind by its name."""
 
 __all__ = ["KINDS", "DriveAct", "DriveEvent", "EventKind", "Sighting", "Tracker"]

@@ -132,7 +132,7 @@ class EventKind(ABC):
     eases: ClassVar[bool] = False
     """Whether it has passed by itself if in the end it only looks like one."""
     told_by: ClassVar[tuple[str, ...]]
-    """Names of the readings (``wakes.WAKES``) that tell of it, and of what speaks against a warning of it; the
+    """Names of the readings (``changes.WAKES``) that tell of it, and of what speaks against a warning of it; the
     context states the rules."""
     neutral: ClassVar[str]
     """What makes a warning true although nothing is due, so that it costs nothing."""
