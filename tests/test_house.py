@@ -26,11 +26,11 @@ ROOM = (60, 2, 2)
 OTHERS = "beside them"
 
 CEILINGS = {
-    "agents": (6440, 66, 0),
+    "agents": (6447, 66, 0),
     "benchmarks": (3362, 19, 0),
-    "cli": (4667, 13, 198),
-    "cockpit": (18803, 189, 0),
-    "contracts": (1590, 67, 0),
+    "cli": (4668, 13, 198),
+    "cockpit": (18814, 189, 0),
+    "contracts": (1478, 67, 0),
     "cosim": (740, 5, 0),
     "doors": (1702, 14, 0),
     "drives": (7742, 82, 0),
@@ -41,7 +41,7 @@ CEILINGS = {
     "geo": (3507, 38, 0),
     "interface": (1583, 5, 0),
     "measures": (909, 8, 0),
-    "models": (2293, 26, 0),
+    "models": (2300, 26, 0),
     "osm": (6302, 43, 0),
     "proof": (3235, 17, 0),
     "publish": (1672, 9, 0),
@@ -56,11 +56,11 @@ CEILINGS = {
     "studies": (13776, 123, 90),
     "tasking": (5610, 61, 0),
     "tasks": (15, 0, 0),
-    "tests": (65451, 126, 0),
+    "tests": (65452, 126, 0),
     "traffic": (12755, 81, 0),
     "view": (1773, 15, 0),
     "voice": (547, 0, 0),
-    "beside them": (319, 15, 0),
+    "beside them": (331, 15, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 
