@@ -5,6 +5,7 @@ It stands beside the package because the command line takes a while to import.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -19,6 +20,9 @@ LOADING = {
 }  # fmt: skip
 """What the commands load that would begin with seconds of silence otherwise: more on a busy machine, and the first
 of a log. Told before anything else is imported."""
+
+GARBAGE = 10_000
+"""Objects after which Python looks for garbage, instead of 700: imports make a hundred thousand that are none."""
 
 
 def _tell_what_loads(words: list[str]) -> None:
@@ -39,6 +43,7 @@ def main() -> None:
         from automotive_cosim.errors import NO_FORK
 
         sys.exit(f"error: {NO_FORK}")
+    gc.set_threshold(GARBAGE)
     heard = signal.getsignal(signal.SIGINT)
     if heard is signal.default_int_handler:  # where it is ignored from the start it stays ignored
         signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -11,32 +11,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from importlib import import_module
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from types import ModuleType
 
+from automotive_cosim.lazy import lazily
+
 __version__ = "0.2.0"
-
-_HOMES = {
-    "automotive_cosim.agents": ("Agent", "make_agent"),
-    "automotive_cosim.contracts": ("Action", "ActionType", "Element", "GoalStatus", "Observation", "Reason"),
-    "automotive_cosim.envs.cockpit": ("CockpitEnv",),
-    "automotive_cosim.envs.drive": ("DriveEnv",),
-    "automotive_cosim.envs.flat": ("FlatEnv",),
-    "automotive_cosim.envs.flat_drive": ("FlatDriveEnv",),
-    "automotive_cosim.errors": ("CosimError", "InfrastructureError", "UserError"),
-    "automotive_cosim.interface.observe": ("Channel",),
-    "automotive_cosim.report.results": ("load_results",),
-    "automotive_cosim.run.batch": ("run_plan",),
-    "automotive_cosim.run.episode": ("EpisodeSetup",),
-    "automotive_cosim.run.episode_row": ("EpisodeRow",),
-    "automotive_cosim.run.plan": ("Plan", "make_plan"),
-    "automotive_cosim.run.trial": ("run_trial",),
-}
-"""Where the public names are defined; ``__init__.pyi`` tells type checkers the same."""
-
-__all__ = sorted(name for names in _HOMES.values() for name in names)  # pyright: ignore[reportUnsupportedDunderAll]
 
 _ENVIRONMENTS = {
     "Cockpit": ("cockpit:CockpitEnv", "vector:cockpits"),
@@ -81,12 +62,4 @@ else:
     sys.meta_path.insert(0, _Registers)
 
 
-def __getattr__(name: str) -> object:
-    for module, names in _HOMES.items():
-        if name in names:
-            return getattr(import_module(module), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazily(__name__, __file__)

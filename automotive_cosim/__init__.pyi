@@ -1,4 +1,4 @@
-"""What type checkers see of the names that are loaded on first use; a test holds the two together."""
+"""The names that are loaded at first use, and where each is defined (``lazy``)."""
 
 from automotive_cosim.agents import Agent, make_agent
 from automotive_cosim.contracts import Action, ActionType, Element, GoalStatus, Observation, Reason

@@ -26,7 +26,7 @@ ROOM = (60, 2, 2)
 OTHERS = "beside them"
 
 CEILINGS = {
-    "agents": (6440, 66, 0),
+    "agents": (6447, 66, 0),
     "benchmarks": (3362, 19, 0),
     "cli": (4667, 13, 198),
     "cockpit": (18801, 189, 0),
@@ -41,7 +41,7 @@ CEILINGS = {
     "geo": (3460, 38, 0),
     "interface": (1464, 5, 0),
     "measures": (909, 8, 0),
-    "models": (2293, 26, 0),
+    "models": (2300, 26, 0),
     "osm": (6302, 43, 0),
     "proof": (3233, 17, 0),
     "publish": (1672, 9, 0),
@@ -60,7 +60,7 @@ CEILINGS = {
     "traffic": (12288, 81, 0),
     "view": (1773, 15, 0),
     "voice": (547, 0, 0),
-    "beside them": (319, 15, 0),
+    "beside them": (331, 15, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
 

@@ -10,6 +10,5 @@ user:   {"tool_results": [...]}, or "words"               the situation as it is
 """
 
 from automotive_cosim.agents.a2a.agent import CHANNELS, A2AAgent
-from automotive_cosim.agents.a2a.contract import PREFIX, is_remote
 
-__all__ = ["CHANNELS", "PREFIX", "A2AAgent", "is_remote"]
+__all__ = ["CHANNELS", "A2AAgent"]

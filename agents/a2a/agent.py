@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from automotive_cosim.agents import prompt
 from automotive_cosim.agents.a2a.contract import (
     ENVIRONMENT,
-    PREFIX,
     USER,
     AnswerReader,
     Metrics,
@@ -18,6 +17,7 @@ from automotive_cosim.agents.a2a.contract import (
     results,
 )
 from automotive_cosim.agents.base import Stage, StageName
+from automotive_cosim.agents.registry import PREFIX
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.agents.thoughts import spoken
 from automotive_cosim.cockpit.actions import TEXT_LIMIT

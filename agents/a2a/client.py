@@ -25,7 +25,7 @@ from a2a.helpers.proto_helpers import new_data_part, new_message, new_raw_part, 
 from a2a.types import AgentCard, GetTaskRequest, Message, Part, Role, SendMessageRequest, Task, TaskState
 from google.protobuf.json_format import MessageToDict
 
-from automotive_cosim.agents.a2a.contract import PREFIX
+from automotive_cosim.agents.registry import PREFIX
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import AgentError, SetupError, UserError
 

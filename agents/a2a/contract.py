@@ -12,17 +12,10 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.interface.functions import Function, as_openai
 from automotive_cosim.models.base import ToolCall
 
-PREFIX = "a2a:"
-"""Of the name of an agent behind an address."""
 USER, ENVIRONMENT = "user", "environment"
 """Whose words a message has, as its metadata says under ``source``."""
 LARGEST_FIGURE = 10**9
 """Of a reported metric; more is nonsense."""
-
-
-def is_remote(name: str) -> bool:
-    """Whether a name is that of an agent behind an address."""
-    return name.startswith(PREFIX)
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,9 +28,6 @@ FASTEST_KMH = 1000.0
 OTHER_ROADS = frozenset(("service", "pedestrian", "track", "road", "busway"))
 """OSM highway values that networks may have in addition to those that an import keeps."""
 
-COMMAND_SETTINGS = {"ignore_unknown_options": True}
-"""Lets a negative number be a plain argument."""
-
 
 @dataclass(frozen=True, slots=True)
 class _ContextSettings:

@@ -9,11 +9,9 @@ from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from automotive_cosim.cli.conditions import given
 from automotive_cosim.cli.derived import settings_in
-from automotive_cosim.cli.options import AsJson, DriveChanges, LimitSettings, print_json
+from automotive_cosim.cli.options import DriveChanges, LimitSettings, print_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import InfrastructureError, UserError
@@ -135,22 +133,6 @@ def _run_fleet(
         raise InfrastructureError(f"{len(failed)} of {len(rows)} cars ended in an error; the first: {failed[0]}")
     if not as_json:
         console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
-
-
-def drives(as_json: AsJson = False) -> None:
-    """List the families of drives, with their season and what can happen in them."""
-    from automotive_cosim.drives.families import FAMILIES
-
-    listed = [
-        {"id": family.id, "season": family.season, "about": family.about, "stages": list(family.cast)}
-        for family in FAMILIES.values()
-    ]
-    if as_json:
-        print_json({"drives": listed})
-        return
-    for family in listed:
-        typer.echo(f"{family['id']:24} {family['season']:7} {family['about']}")
-        typer.echo(f"{'':34} stages {', '.join(family['stages'])}")
 
 
 def _tell(console: Console, row: DriveTrialRow, timeline: Json) -> None:

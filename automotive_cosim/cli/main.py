@@ -13,15 +13,15 @@ import signal
 import sys
 import threading
 from contextlib import nullcontext
+from copy import copy
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Annotated, Any
 
 import typer
 
-from automotive_cosim import __version__
+import automotive_cosim
 from automotive_cosim.cli import CONTENTS, READ, RUN, TOOLS
 from automotive_cosim.cli.terminal import discard_output, json_alone, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
@@ -51,6 +51,19 @@ COMMANDS = (
     ("scenarios", "scenarios:app", CONTENTS),
     ("agents", "agents:app", CONTENTS),
     ("show", "show:app", CONTENTS),
+    ("show screens", "show:screens", ""),
+    ("show signals", "show:signals", ""),
+    ("show functions", "show:functions", ""),
+    ("show drives", "show:drives", ""),
+    ("show apps", "show:apps", ""),
+    ("show events", "show:events", ""),
+    ("show wakes", "show:wakes", ""),
+    ("show spaces", "show:spaces", ""),
+    ("show factors", "show:factors", ""),
+    ("show policy", "show:policy", ""),
+    ("show context", "context:context", ""),
+    ("show memory", "show:memory", ""),
+    ("show schema", "show:schema", ""),
     ("ci", "ci:app", TOOLS),
     ("doctor", "doctor:doctor", TOOLS),
     ("bench", "bench:bench", TOOLS),
@@ -58,51 +71,61 @@ COMMANDS = (
     ("mcp", "mcp:mcp", TOOLS),
     ("a2a", "a2a:a2a", TOOLS),
 )
-"""Their names, where they are, and in which part of the list they stand. Extensions add more."""
+"""Their words, where they are, and in which part of the list they stand: commands, groups, and what groups have
+besides their own. Extensions add more."""
 LIST = "--help"
 """Asked for without a command: the list of all."""
-EXTENDED = "scenarios"
-"""The group to which extensions add commands."""
+SIGNED = "show context"
+"""Its arguments may be negative numbers."""
 
 
 @cache
-def made(asked: str = "") -> typer.Typer:
-    """The command line; of the commands above only the one that is asked for, if it is one of them, because to
-    import the others takes longer than most commands do."""
+def made(*asked: str) -> typer.Typer:
+    """The command line; with the words that are asked for, only what they name is imported, because to import the
+    others takes longer than most commands do. What stands beside it is listed."""
+    rows = {words: (f"automotive_cosim.cli.{where}", panel) for words, where, panel in COMMANDS}
+    rows |= {words: (where, panel) for each in extensions() for words, where, panel in each.COMMANDS}
+    named = next((words for words in (" ".join(asked[:2]), *asked[:1]) if words in rows), "")
     app = typer.Typer(
         name="automotive-cosim",
         help="Agents that operate the cockpit of a car in live SUMO traffic.",
         no_args_is_help=True,
         add_completion=False,
         pretty_exceptions_enable=False,
-        context_settings={"help_option_names": ["-h", "--help"]},
     )
-    app.callback()(_options)
-    rows = [(name, f"automotive_cosim.cli.{where}", panel) for name, where, panel in COMMANDS]
-    rows += [row for extension in extensions() for row in extension.COMMANDS]
-    alone = [row for row in rows if row[0] == asked]
-    groups = {}
-    for name, where, panel in alone or rows:
-        command = _listed(where) if asked == LIST else resolve_name(where)
+    apps = {"": app}
+    for words, (where, panel) in rows.items():
+        group, _, name = words.rpartition(" ")
+        is_named = not asked or f"{named} ".startswith(f"{words} ")
+        if group not in apps or not (is_named or group == named):
+            continue
+        command = resolve_name(where) if is_named else _listed(where)
         if isinstance(command, typer.Typer):
-            app.add_typer(command, name=name, rich_help_panel=panel)
-            groups[name] = command
+            apps[words] = copy(command)
+            apps[words].registered_commands = [*command.registered_commands]
+            apps[group].add_typer(apps[words], name=name, rich_help_panel=panel)
         else:
-            app.command(name, rich_help_panel=panel)(command)
-    if asked == EXTENDED or not (alone or asked == LIST):
-        for extension in extensions():
-            extension.add_commands(groups)
+            signed = {"ignore_unknown_options": words == SIGNED}
+            apps[group].command(name, rich_help_panel=panel or None, context_settings=signed)(command)
+    # Typer imports pydantic to find out that no help was asked for, unless that has a default.
+    below = asked[: 2 if asked[:1] and asked[0] in apps else 1]
+    defaults: dict[str, Any] = {"help": False}
+    for word in reversed(below):
+        defaults = {"help": False, word: defaults}
+    settings = {"help_option_names": ["-h", "--help"], "default_map": defaults}
+    app.callback(context_settings=settings)(_options)
     return app
 
 
 def _listed(where: str) -> Any:
     """A command or group that only has its help, read from its file: to import all takes most of a second."""
     module, _, named = where.partition(":")
-    spec = find_spec(module)
+    home = Path(automotive_cosim.__file__).parent.joinpath(*module.split(".")[1:])
+    file = home / "__init__.py" if home.is_dir() else home.with_suffix(".py")
 
     def listed() -> None: ...
 
-    for node in ast.parse(Path(str(spec and spec.origin)).read_text(encoding="utf-8")).body:
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
         if isinstance(node, ast.FunctionDef) and node.name == named:
             listed.__doc__ = ast.get_docstring(node)
         elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == named:
@@ -121,7 +144,7 @@ def __getattr__(name: str) -> typer.Typer:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"automotive-cosim {__version__}")
+        typer.echo(f"automotive-cosim {automotive_cosim.__version__}")
         raise typer.Exit
 
 
@@ -175,8 +198,8 @@ def main() -> None:
 def _run() -> int:
     """Runs a command; returns the exit code."""
     try:
-        asked = next((word for word in sys.argv[1:] if not word.startswith("-")), LIST)
-        return made(asked)(standalone_mode=False) or 0
+        asked = [word for word in sys.argv[1:] if not word.startswith("-")]
+        return made(*asked[:2] or (LIST,))(standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise

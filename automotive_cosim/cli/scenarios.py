@@ -36,18 +36,15 @@ app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_hel
 @app.command("list")
 def list_scenarios(as_json: AsJson = False) -> None:
     """List the scenarios that come with the package."""
-    from rich.table import Table
-
-    from automotive_cosim.cli.console import Console
+    from automotive_cosim.scenarios.listing import listed
 
     if as_json:
         print_json({"scenarios": [_shown(scenarios.load(name)) for name in scenarios.shipped()]})
         return
-    table = Table("name", "country", "title", "ego trips", box=None, header_style="bold", pad_edge=False)
-    for name in scenarios.shipped():
-        scenario = scenarios.load(name)
-        table.add_row(name, scenario.country, scenario.title, ", ".join(trip.name for trip in scenario.ego.trips))
-    Console().print(table)
+    rows = [("name", "country", "title", "ego trips"), *listed()]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        typer.echo("  ".join(map(str.ljust, row, widths)).rstrip())
 
 
 MOST_STREETS, MOST_OF_A_STREET = 8, 6

@@ -10,10 +10,15 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli import context, drive
 from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+
+app = typer.Typer(
+    help="Show screens, apps, signals, functions, drives and their events, local law and file formats.",
+    no_args_is_help=True,
+)
+"""Its commands stand in ``main.COMMANDS``, so that each is imported alone."""
 
 FORMATS = {".webp": "WEBP", ".png": "PNG", ".jpg": "JPEG"}
 
@@ -89,6 +94,22 @@ def functions(
         typer.echo(known.signature(function, is_told=False).removeprefix("- "))
         typer.echo(f"    {function.about}")
     typer.echo(f"\n{len(every)} functions; --json and --tools print their JSON Schemas")
+
+
+def drives(as_json: AsJson = False) -> None:
+    """List the families of drives, with their season and what can happen in them."""
+    from automotive_cosim.drives.families import FAMILIES
+
+    listed = [
+        {"id": family.id, "season": family.season, "about": family.about, "stages": list(family.cast)}
+        for family in FAMILIES.values()
+    ]
+    if as_json:
+        print_json({"drives": listed})
+        return
+    for family in listed:
+        typer.echo(f"{family['id']:24} {family['season']:7} {family['about']}")
+        typer.echo(f"{'':34} stages {', '.join(family['stages'])}")
 
 
 def apps(as_json: AsJson = False) -> None:
@@ -232,22 +253,3 @@ def schema(
     else:
         write_whole(out, text)
         typer.echo(f"{out} written")
-
-
-app = typer.Typer(
-    help="Show screens, apps, signals, functions, drives and their events, local law and file formats.",
-    no_args_is_help=True,
-)
-app.command()(screens)
-app.command()(signals)
-app.command()(functions)
-app.command("drives")(drive.drives)
-app.command()(apps)
-app.command()(events)
-app.command()(wakes)
-app.command()(spaces)
-app.command()(factors)
-app.command()(policy)
-app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
-app.command()(memory)
-app.command()(schema)

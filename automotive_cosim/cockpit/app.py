@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from automotive_cosim.cockpit.functions import CarFunction
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.widgets import Widget

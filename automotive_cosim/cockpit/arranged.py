@@ -18,7 +18,7 @@ from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.make import OwnScreen, Shelf
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.registry import pages
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.tree import named, shown_by

@@ -17,8 +17,8 @@ from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, Focus, Show
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.signals import HMI, Signal, Signals
-from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, Message, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.timer import Timer

@@ -21,8 +21,9 @@ from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.make import Make
 from automotive_cosim.cockpit.messages import Back, Dismiss, Show
 from automotive_cosim.cockpit.notices import lit, lit_in_words
+from automotive_cosim.cockpit.room import Frame
 from automotive_cosim.cockpit.signals import ADAS, CALL, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
-from automotive_cosim.cockpit.size import Frame, ScreenSize
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.telltales import Telltale
 from automotive_cosim.cockpit.theme import MARGIN, Icon, Type

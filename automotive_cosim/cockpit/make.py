@@ -26,8 +26,9 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, Le, MaxLen, MinLen
 
+from automotive_cosim.cockpit.room import DisplayEdge, Frame
 from automotive_cosim.cockpit.signals import HMI
-from automotive_cosim.cockpit.size import DisplayEdge, Frame, ScreenSize
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import DAY, HOME_STYLE, NIGHT, Icon, Style
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.contracts.text import Text

@@ -17,8 +17,9 @@ from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.make import HOME, Make
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
+from automotive_cosim.cockpit.room import Frame
 from automotive_cosim.cockpit.signals import CALL, HMI, MOTION, Signal, Signals
-from automotive_cosim.cockpit.size import Frame, ScreenSize
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.telltales import RoadSign
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres

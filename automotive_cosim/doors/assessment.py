@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim import __version__
-from automotive_cosim.agents.a2a import PREFIX
+from automotive_cosim.agents.registry import PREFIX
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UnknownNameError, UserError

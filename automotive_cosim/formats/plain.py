@@ -9,7 +9,7 @@ SHOWN_AS = "\N{REPLACEMENT CHARACTER}"
 OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 """Both sets of controls without line ends and tabs, and what reverses the direction of writing."""
 
-UNWRITABLE = re.compile(
+_UNWRITABLE = (
     "[^\t\n\r\x20-\x7e\xa0-\ud7ff\ue000-\ufdcf\ufdf0-\ufffd\U00010000-\U0010ffff]"
     f"|[{''.join(chr(plane << 16 | last) for plane in range(1, 17) for last in (0xFFFE, 0xFFFF))}]"
 )
@@ -18,7 +18,7 @@ UNWRITABLE = re.compile(
 
 def markup(text: str) -> str:
     """A page or an XML document with a replacement character for each that it may not hold."""
-    return UNWRITABLE.sub(SHOWN_AS, text)
+    return re.sub(_UNWRITABLE, SHOWN_AS, text)
 
 
 def plain(text: str) -> str:

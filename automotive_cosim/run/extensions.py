@@ -1,8 +1,8 @@
 """What extends the package, which knows nothing of it: a sub-package with a module ``extension``.
 
-Its ``COMMANDS`` are rows of the command line, and ``add_commands(groups)`` adds to groups of it by their names. Its
-``kinds()`` are kinds of results folder, by the word under ``study`` in the plan of a manifest. An installation
-without the sub-package lacks these and nothing else.
+Its ``COMMANDS`` are rows of the command line, also in its groups. Its ``kinds()`` are kinds of results folder, by
+the word under ``study`` in the plan of a manifest. An installation without the sub-package lacks these and nothing
+else.
 """
 
 from __future__ import annotations

@@ -10,8 +10,8 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TypeAlias, cast
 
-from automotive_cosim.agents import PROFILES, AgentSettings, NativeAgent, make_agent
-from automotive_cosim.agents.a2a import CHANNELS, is_remote
+from automotive_cosim.agents import PROFILES, AgentSettings, NativeAgent, is_remote, make_agent
+from automotive_cosim.agents.a2a import CHANNELS
 from automotive_cosim.agents.settings import parts
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation

@@ -5,6 +5,7 @@
         paris_centre.sumocfg     opens in sumo-gui as it is
         ...
 
+listing     the shipped scenarios as lists tell of them
 reader      ``scenario.toml`` -> ``Scenario``
 wording     an incident in words, as options have it
 opening     a name, a folder, a .sumocfg or a plain network -> Scenario
@@ -17,45 +18,8 @@ picture     draws it
 variant     a copy with another demand
 """
 
-from typing import TYPE_CHECKING
+from __future__ import annotations
 
-from automotive_cosim.formats.scenario import (
-    LINKS,
-    Ego,
-    LinkAt,
-    Scenario,
-    Street,
-    Sumo,
-    Trip,
-    WeatherAt,
-    link_at,
-    weather_at,
-)
-from automotive_cosim.scenarios.reader import load, shipped
+from automotive_cosim.lazy import lazily
 
-if TYPE_CHECKING:
-    from automotive_cosim.scenarios.opening import open_scenario
-
-__all__ = [
-    "LINKS",
-    "Ego",
-    "LinkAt",
-    "Scenario",
-    "Street",
-    "Sumo",
-    "Trip",
-    "WeatherAt",
-    "link_at",
-    "load",
-    "open_scenario",
-    "shipped",
-    "weather_at",
-]
-
-
-def __getattr__(name: str) -> object:
-    if name == "open_scenario":  # loaded on first use: who only reads scenarios needs no traffic
-        from automotive_cosim.scenarios.opening import open_scenario
-
-        return open_scenario
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__ = lazily(__name__, __file__)

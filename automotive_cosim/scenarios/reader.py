@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from datetime import datetime
-from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
@@ -19,15 +18,10 @@ from automotive_cosim.formats.annotations import Called, Form
 from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.scenario import Described, LinkAt, Scenario, WeatherAt
 from automotive_cosim.formats.toml import Document, read_toml
+from automotive_cosim.scenarios.listing import HOME, shipped
 
 YEARS = 1970, 2199
 """Those that sun, clocks and calendars are computed for."""
-
-
-def shipped() -> tuple[str, ...]:
-    """Names of the scenarios that come with the package."""
-    root = Path(str(files("automotive_cosim").joinpath("sumo_scenarios")))
-    return tuple(sorted(path.parent.name for path in root.glob("*/scenario.toml")))
 
 
 def load(name_or_folder: str | Path) -> Scenario:
@@ -41,7 +35,7 @@ def load(name_or_folder: str | Path) -> Scenario:
     if not (folder / "scenario.toml").is_file():
         names = shipped()
         if str(name_or_folder) in names:  # also beside a folder of results of that name
-            folder = Path(str(files("automotive_cosim").joinpath("sumo_scenarios"))) / str(name_or_folder)
+            folder = HOME / str(name_or_folder)
         elif folder.is_dir():
             raise ScenarioError(f"{folder} has no scenario.toml; make one with `automotive-cosim scenarios import`")
         elif is_file(folder):

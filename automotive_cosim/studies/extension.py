@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-import typer
-
 from automotive_cosim.cli import RUN
 from automotive_cosim.run.extensions import ResultsKind
 
-COMMANDS = (("study", "automotive_cosim.studies.commands:app", RUN),)
+COMMANDS = (
+    ("study", "automotive_cosim.studies.commands:app", RUN),
+    ("scenarios calibrate", "automotive_cosim.studies.commands.calibrate:calibrate_scenario", ""),
+    ("scenarios equilibrate", "automotive_cosim.studies.commands.equilibrate:equilibrate_scenario", ""),
+)
 """As in the command line."""
-
-
-def add_commands(groups: Mapping[str, typer.Typer]) -> None:
-    """Adds ``calibrate`` and ``equilibrate`` to ``scenarios``."""
-    from automotive_cosim.studies.commands.calibrate import calibrate_scenario
-    from automotive_cosim.studies.commands.equilibrate import equilibrate_scenario
-
-    groups["scenarios"].command("calibrate")(calibrate_scenario)
-    groups["scenarios"].command("equilibrate")(equilibrate_scenario)
 
 
 def kinds() -> dict[str, ResultsKind]:

@@ -21,7 +21,7 @@ from automotive_cosim.contracts.roads import RoadNetwork
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.files import open_file
 from automotive_cosim.formats.toml import Document, read_toml
-from automotive_cosim.scenarios.reader import shipped
+from automotive_cosim.scenarios.listing import shipped
 from automotive_cosim.tasking.binding import rules_of
 from automotive_cosim.tasking.moves import Open
 from automotive_cosim.tasking.reading import shared, tasks_in

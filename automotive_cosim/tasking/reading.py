@@ -20,9 +20,9 @@ from dataclasses import dataclass, fields
 from functools import cache
 from typing import Any
 
-from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.occupants import company
 from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.contracts.given import Language
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.checked import Steps

@@ -17,12 +17,11 @@ from annotated_types import Ge, Gt, Le
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.belongings import NOTHING, Belongings
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.missing_parts import Lacking
 from automotive_cosim.cockpit.occupants import Occupant, Seat
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
-from automotive_cosim.contracts.given import NEEDS_PICTURE
+from automotive_cosim.contracts.given import NEEDS_PICTURE, Language
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.checks import Check, asked_in
 from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic

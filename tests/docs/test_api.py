@@ -28,7 +28,7 @@ def own(module):
     """The classes and functions that a module or package defines under a public name."""
     return [
         each
-        for name, each in vars(module).items()
+        for name, each in ((name, getattr(module, name)) for name in dir(module))
         if not name.startswith("_")
         and (inspect.isclass(each) or inspect.isfunction(each))
         and each.__module__.startswith(module.__name__)
@@ -43,16 +43,15 @@ def test_the_page_lists_exactly_the_names_of_the_package():
     assert [name.partition(".")[2] for name in NAMES if name.count(".") == 1] == automotive_cosim.__all__
 
 
-def test_type_checkers_see_the_names_where_they_are():
-    stub = ast.parse((TOP / "automotive_cosim/__init__.pyi").read_text(encoding="utf-8"))
-    told = {
-        each.module: tuple(name.name for name in each.names)
-        for each in stub.body
-        if isinstance(each, ast.ImportFrom)
-    }
-    assert told == automotive_cosim._HOMES
-    (names,) = (each.value for each in stub.body if isinstance(each, ast.Assign))
-    assert ast.literal_eval(names) == automotive_cosim.__all__
+@over([*sorted((TOP / "automotive_cosim").rglob("__init__.pyi")), TOP / "agents/__init__.pyi"])
+def test_every_name_of_a_stub_is_there_and_from_where_it_says(stub):
+    home = stub.parent.name
+    package = importlib.import_module(f"automotive_cosim.{home}".removesuffix(".automotive_cosim"))
+    body = ast.parse(stub.read_text(encoding="utf-8")).body
+    homes = {name.name: each.module for each in body if isinstance(each, ast.ImportFrom) for name in each.names}
+    (names,) = (ast.literal_eval(each.value) for each in body if isinstance(each, ast.Assign))
+    assert sorted(names) == package.__all__ == sorted(homes)
+    assert all(getattr(package, name) is getattr(importlib.import_module(homes[name]), name) for name in homes)
 
 
 @over([each for _, each in PUBLIC])

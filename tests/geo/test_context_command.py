@@ -14,7 +14,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.geo.forecast import OpenMeteo
 
 APP = typer.Typer()
-APP.command(context_settings=context.COMMAND_SETTINGS)(context.context)
+APP.command(context_settings={"ignore_unknown_options": True})(context.context)
 
 
 def _run(*arguments: str) -> str:

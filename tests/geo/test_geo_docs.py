@@ -28,7 +28,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 DOC = "".join((DOCS / page).read_text(encoding="utf-8") for page in ("geo.md", "reference/geo.md"))
 BLOCKS = re.findall(r"```(\w+)\n(.*?)```", DOC, re.DOTALL)
 APP = typer.Typer()
-APP.command(context_settings=context.COMMAND_SETTINGS)(context.context)
+APP.command(context_settings={"ignore_unknown_options": True})(context.context)
 
 
 def _block(kind: str, number: int = 0) -> str:

@@ -17,8 +17,9 @@ from automotive_cosim.agents.guest import Guest
 from automotive_cosim.contracts import BoundingBox, Element, Feedback, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ModelError, SetupError, UserError, install_hint
-from automotive_cosim.models import ChatMessage, Local, local, make_model
+from automotive_cosim.models import ChatMessage, local, make_model
 from automotive_cosim.models.gguf import ModelFile, read_model_file
+from automotive_cosim.models.local import Local
 from automotive_cosim.run.model_check import misfit
 
 FORM = {"type": "object", "properties": {"action": {"type": "object"}}, "required": ["action"]}

@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, named
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.pois import Gazetteer, PoiKind
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Label, Row, Widget

@@ -20,8 +20,8 @@ from automotive_cosim.cockpit.layout import REST, column, panes
 from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.notices import NOTICED, lit, lit_in_words
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, GLASS, HVAC, MEDIA, MOTION
-from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.values import distance, speed, speed_unit, temperature

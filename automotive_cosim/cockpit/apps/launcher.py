@@ -8,7 +8,7 @@ from automotive_cosim.cockpit.cards import content, rows
 from automotive_cosim.cockpit.flow import fill
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.registry import apps, apps_in
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Widget

@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.flow import card, fill, grid, panels, stack
 from automotive_cosim.cockpit.functions import CallMade, named, offered, unknown
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Show
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.values import minutes

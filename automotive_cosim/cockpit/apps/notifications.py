@@ -9,8 +9,8 @@ from automotive_cosim.cockpit.flow import card, fill, line
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Dismiss, Show
 from automotive_cosim.cockpit.notices import LOW_BATTERY_PCT, LOW_KPA, NOTICED, TYRES
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.signals import ENERGY, GLASS
-from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.widgets import Button, Row, Widget

@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.flow import card, fill
 from automotive_cosim.cockpit.functions import CallMade, locked, offered, unknown
 from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.widgets import Row, Widget

@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.commands import Put, SimpleCommand
 from automotive_cosim.cockpit.flow import card, fill, line
 from automotive_cosim.cockpit.functions import CallMade, offered
 from automotive_cosim.cockpit.layout import REST
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.values import minutes

@@ -11,8 +11,8 @@ from automotive_cosim.cockpit.flow import card, fill, grid, line
 from automotive_cosim.cockpit.functions import CallMade, offered
 from automotive_cosim.cockpit.layout import REST
 from automotive_cosim.cockpit.messages import Back, Show
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.signals import ENERGY, HMI
-from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, Command, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.values import distance, minutes, speed, speed_unit

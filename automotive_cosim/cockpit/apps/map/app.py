@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.apps.map.screens import map_screen
 from automotive_cosim.cockpit.apps.map.state import Navigation, Viewpoint
 from automotive_cosim.cockpit.apps.map.way import explore, place, route
 from automotive_cosim.cockpit.pois import atlas
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts.text import say

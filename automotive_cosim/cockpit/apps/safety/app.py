@@ -5,7 +5,7 @@ from __future__ import annotations
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.safety.screens import emergency, safety
 from automotive_cosim.cockpit.apps.safety.state import AlertDraft, Alerts
-from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.room import Room
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts.text import say, say_in
 
