@@ -24,7 +24,7 @@ import re
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import chain, starmap
+from itertools import starmap
 from math import inf, log1p, log10
 from typing import Any, NamedTuple
 
@@ -50,6 +50,7 @@ CHANNELS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
 """What the numbers are read from; no action of this view touches an element."""
 SLOTS = (48, 64)
 """Slots of the words of road and weather, and of the law's lines."""
+KINDS = tuple(AlertKind)
 READINGS = tuple(wake.name for wake in WAKES)
 """Names of the car's readings."""
 SOON_S = 2
@@ -302,15 +303,15 @@ class DriveNumbers:
         for name, sign in SIGNS.items():
             self._see(name, sign.seen(known, numbers), known.time_s)
         ages_s = (known.time_s - self._since[name][1] if name in self._since else 0.0 for name in SIGNS)
-        parts = [
-            *numbers.values(),
-            *chain.from_iterable(map(_words, texts, SLOTS)),
+        kept = [
             *(float(name in known.changed) for name in READINGS),
             *(_age(age_s) if age_s else 0.0 for age_s in ages_s),
             *(float(name in self._since and name not in self._told) for name in SIGNS),
-            *(_age(known.time_s - self._shown_s[kind]) if kind in self._shown_s else 1.0 for kind in AlertKind),
+            *(_age(known.time_s - self._shown_s[kind]) if kind in self._shown_s else 1.0 for kind in KINDS),
         ]
-        return np.array(parts, np.float32).clip(-1.0, 1.0)
+        read = np.array([*numbers.values()], np.float32)
+        np.minimum(np.maximum(read, -1.0, out=read), 1.0, out=read)
+        return np.concatenate((read, *map(_words, texts, SLOTS), np.array(kept, np.float32)))
 
     def _see(self, name: str, what: Hashable, now_s: float) -> None:
         """Notes a sign: since when it has been as it is, and whether it is still the one that was told of."""
@@ -333,10 +334,10 @@ _LOG_LONG = log1p(LONG_S)
 
 
 @lru_cache(maxsize=1024)
-def _words(lines: tuple[str, ...], slots: int) -> list[float]:
+def _words(lines: tuple[str, ...], slots: int) -> npt.NDArray[np.float32]:
     """Slots of the words of some lines, without numbers: these are features. Cached, as most
     lines are the same from second to second."""
-    return hashed(map(_without_numbers, lines), slots)
+    return np.array(hashed(map(_without_numbers, lines), slots), np.float32)
 
 
 @lru_cache(maxsize=4096)
