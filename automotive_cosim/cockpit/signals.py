@@ -608,7 +608,8 @@ _PLACES = {path: place for place, path in enumerate(ACTUATORS)} | {path: ~n for 
 
 def picker(paths: Sequence[str]) -> Callable[[Mapping[str, Any]], tuple[Any, ...]]:
     """A function that takes the values of several paths at once from a snapshot, or from any paths and values."""
-    named, placed = itemgetter(*paths), itemgetter(*map((*ACTUATORS, *OTHERS).index, paths))
+    named: Callable[[Mapping[str, Any]], tuple[Any, ...]] = itemgetter(*paths)
+    placed: Callable[[tuple[Any, ...]], tuple[Any, ...]] = itemgetter(*map((*ACTUATORS, *OTHERS).index, paths))
 
     def pick(values: Mapping[str, Any]) -> tuple[Any, ...]:
         return placed(values._commanded + values._others) if isinstance(values, Snapshot) else named(values)

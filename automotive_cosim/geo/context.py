@@ -13,7 +13,7 @@ from datetime import datetime
 from functools import cached_property
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
-from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, said_at
+from automotive_cosim.geo.applied import AppliedRule, Said, built_up, facts_at, said_at
 from automotive_cosim.geo.binding import BindingLimit, binding
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
