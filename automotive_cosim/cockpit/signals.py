@@ -576,9 +576,10 @@ class Signals:
     @property
     def actuators(self) -> tuple[Any, ...]:
         """The value of every actuator, in the order of ``ACTUATORS``: the same object until one is set."""
-        if self._commanded is None:
-            self._commanded = _actuators(self._values)
-        return self._commanded
+        known = self._commanded
+        if known is None:
+            known = self._commanded = _actuators(self._values)
+        return known
 
     def picked(self, read: Callable[[Mapping[str, Any]], tuple[Any, ...]]) -> tuple[Any, ...]:
         """What a getter takes of all paths and values, without a copy of them."""

@@ -113,13 +113,12 @@ def test_the_same_acts_give_the_trace_of_the_drive(flat, ruled, simulations):
     actions, _, _, info, _ = ruled
     again = played(flat, iter(actions).__next__)
     assert again[3] == info
-    trace = flat.episode.trace_sha256
     env = DriveEnv("grid_june", minutes=MINUTES, channels=CHANNELS, simulations=simulations)
     env.reset(seed=SEED)
     told = {}
     for number in actions:
         *_, told = env.step(ACTIONS[number])
-    assert (told["trace_sha256"], told["score"]) == (trace, info["score"])
+    assert (told["trace_sha256"], told["score"]) == (flat.episode.trace_sha256, info["score"])
     env.close()
 
 
