@@ -305,8 +305,9 @@ class Cockpit(Touchscreen):
         """An answer in the language of the screens."""
         return language.answered(feedback, self.signals[HMI.LANGUAGE], self._state.make)
 
-    def commands(self) -> dict[str, Any]:
-        """Everything that can be commanded: actuators by path, app data, and what was sent."""
+    def commands(self) -> Mapping[str, Any]:
+        """Everything that can be commanded: actuators by path, app data, and what was sent; the same object as long
+        as nothing is."""
         return self._state.commands()
 
     def vehicle_state(self) -> VehicleState:

@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from shapely import Geometry, LineString, Polygon, STRtree, box
+from shapely import Geometry, LineString, Point, Polygon, STRtree, box
 
 from automotive_cosim.cockpit.drawing import text_width
 from automotive_cosim.cockpit.geometry import Rect
@@ -76,10 +76,13 @@ class RoadMap:
         self._points = np.concatenate(shapes) if shapes else np.empty((0, 2))
         self._starts = np.cumsum([0, *(len(shape) for shape in shapes)])
         self._rounded = _bends(self._points, self._starts)
-        self._middles = np.array([_middle(shape) for shape in shapes]).reshape(-1, 2)
-        self._named = np.array([bool(road.name) for road in self.roads], dtype=bool)
-        self._lengths = np.array([road.length_m for road in self.roads])
         self._ranks = np.array([_rank(road) for road in self.roads], dtype=np.int64)
+        lengths = np.array([road.length_m for road in self.roads])
+        named = [at for at in np.lexsort((-lengths, -self._ranks)).tolist() if self.roads[at].name]
+        self._named = [self.roads[at].name for at in named]
+        """Names of roads, as often as there are such: of major roads first, then of long ones."""
+        self._middles = np.array([_middle(shapes[at]) for at in named]).reshape(-1, 2)
+        self._named_tree = STRtree([Point(*at) for at in self._middles])
         in_tunnel = np.array([road.in_tunnel for road in self.roads], dtype=bool)
         self._depths = np.where(in_tunnel, -1, self._ranks)
         self._index = {road.edge_id: i for i, road in enumerate(self.roads)}
@@ -123,16 +126,13 @@ class RoadMap:
             avoid: boxes that must stay free.
         """
         view = View(camera, 1 / camera.metres_per_pixel, area.width / 2, area.height * camera.down)
-        found = self._tree.query(view.bounds(area.width, area.height))
-        middles = view.pixels(self._middles[found])
-        inside = np.all((middles > 0) & (middles < (area.width, area.height)), axis=1) & self._named[found]
-        found, middles = found[inside], middles[inside] + np.array((area.x, area.y))
-        order = np.lexsort((found, -self._lengths[found], -self._ranks[found]))
+        found = np.sort(self._named_tree.query(view.bounds(area.width, area.height)))
+        middles = view.pixels(self._middles[found]) + np.array((area.x, area.y))
         ego = Rect(area.x + area.width // 2, area.y + round(area.height * camera.down), 0, 0).inset(-34)
         taken = [(box.x - 6, box.y - 6, box.right + 6, box.bottom + 6) for box in (*avoid, ego)]
         names, room = dict[str, StreetName](), area.inset(4)
-        for road, (x, y) in zip(found[order].tolist(), middles[order].astype(int).tolist(), strict=True):
-            text = self.roads[road].name
+        for at, (x, y) in zip(found.tolist(), middles.astype(int).tolist(), strict=True):
+            text = self._named[at]
             if text in names:
                 continue
             wide = _plate_width(text)
@@ -188,10 +188,10 @@ class View:
         """From metres of the network to pixels, the heading upwards."""
         cos, sin = self._turn
         dx, dy = points_m[:, 0] - self.camera.x_m, points_m[:, 1] - self.camera.y_m
-        return np.stack(
-            (self.x + self.per_metre * (dx * cos - dy * sin), self.y - self.per_metre * (dx * sin + dy * cos)),
-            axis=1,
-        )
+        pixels = np.empty_like(points_m)
+        pixels[:, 0] = self.x + self.per_metre * (dx * cos - dy * sin)
+        pixels[:, 1] = self.y - self.per_metre * (dx * sin + dy * cos)
+        return pixels
 
     def pixel(self, x_m: float, y_m: float) -> tuple[float, float]:
         """The same for one point."""

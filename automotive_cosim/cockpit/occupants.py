@@ -13,12 +13,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
-from operator import itemgetter
 from typing import Annotated, Any
 
 from annotated_types import Gt, Le
 
-from automotive_cosim.cockpit.signals import OCCUPANT, Seated, Signals
+from automotive_cosim.cockpit.signals import OCCUPANT, Seated, Signals, picker
 from automotive_cosim.errors import UserError
 
 
@@ -139,7 +138,7 @@ def seated_by(values: Mapping[str, Any]) -> Iterator[Occupant]:
 
 
 _PARTS = ("occupied", "kind", "weight", "asleep", "belted")
-_read = itemgetter(*(getattr(at, part).path for part in _PARTS for at in SIGNALS.values()))
+_read = picker([getattr(at, part).path for part in _PARTS for at in SIGNALS.values()])
 
 
 @lru_cache(maxsize=256)

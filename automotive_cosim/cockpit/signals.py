@@ -12,11 +12,11 @@ off. What VSS lacks has paths in its manner.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from math import inf
-from operator import is_, itemgetter
+from operator import itemgetter
 from typing import Any, Generic, TypeVar, cast
 
 from automotive_cosim.errors import SignalError, UnknownNameError
@@ -552,7 +552,7 @@ class Signals:
         """
         self._values: dict[str, Any] = {path: signal.default for path, signal in CATALOGUE.items()}
         self._commanded: tuple[Any, ...] | None = None
-        """The actuators' values in the last snapshot."""
+        """The actuators' values, once somebody has asked for them since one was set."""
         for path, value in (values or {}).items():
             self._values[path] = named(path).check(value)
 
@@ -563,17 +563,23 @@ class Signals:
     def __setitem__(self, signal: Signal[T], value: T) -> None:
         if self._values[signal.path] is not value:
             self._values[signal.path] = signal.check(value)
+            if signal.kind is LeafKind.ACTUATOR:
+                self._commanded = None
 
     def __iter__(self) -> Iterator[Signal[Any]]:
         return iter(CATALOGUE.values())
 
     def snapshot(self) -> Snapshot:
         """Path and value of every signal, as they are now."""
-        commanded, last = _actuators(self._values), self._commanded
-        if last is not None and all(map(is_, commanded, last)):
-            commanded = last
-        self._commanded = commanded
-        return Snapshot(commanded, _others(self._values))
+        return Snapshot(self.actuators, _others(self._values))
+
+    @property
+    def actuators(self) -> tuple[Any, ...]:
+        """The value of every actuator, in the order of ``ACTUATORS``: the same object until one is set."""
+        known = self._commanded
+        if known is None:
+            known = self._commanded = _actuators(self._values)
+        return known
 
     def picked(self, read: Callable[[Mapping[str, Any]], tuple[Any, ...]]) -> tuple[Any, ...]:
         """What a getter takes of all paths and values, without a copy of them."""
@@ -581,10 +587,11 @@ class Signals:
 
     def commanded(self) -> dict[str, Any]:
         """Path and value of every actuator; a copy."""
-        return dict(zip(ACTUATORS, _actuators(self._values), strict=True))
+        return dict(zip(ACTUATORS, self.actuators, strict=True))
 
     def reset(self) -> None:
         self._values = {path: signal.default for path, signal in CATALOGUE.items()}
+        self._commanded = None
 
     def copy(self) -> Signals:
         twin = Signals.__new__(Signals)
@@ -598,6 +605,19 @@ OTHERS = tuple(path for path in CATALOGUE if path not in ACTUATORS)
 _actuators, _others = itemgetter(*ACTUATORS), itemgetter(*OTHERS)
 _in_order = itemgetter(*map((*ACTUATORS, *OTHERS).index, CATALOGUE))
 _PLACES = {path: place for place, path in enumerate(ACTUATORS)} | {path: ~n for n, path in enumerate(OTHERS)}
+
+
+def picker(paths: Sequence[str]) -> Callable[[Mapping[str, Any]], tuple[Any, ...]]:
+    """A function that takes the values of several paths at once from a snapshot, or from any paths and values."""
+    named: Callable[[Mapping[str, Any]], tuple[Any, ...]] = itemgetter(*paths)
+    placed: Callable[[tuple[Any, ...]], tuple[Any, ...]] = itemgetter(*map((*ACTUATORS, *OTHERS).index, paths))
+
+    def pick(values: Mapping[str, Any]) -> tuple[Any, ...]:
+        return placed(values._commanded + values._others) if isinstance(values, Snapshot) else named(values)
+
+    return pick
+
+
 OF_ATTENTION = (DRIVER.DISTRACTION.path, DRIVER.FATIGUE.path)
 """Not in a snapshot where they are None."""
 

@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+from operator import is_
 from typing import Any, ClassVar, TypeVar, cast
 
 from automotive_cosim.cockpit.cabin import Cabin, CabinStart
@@ -240,6 +241,8 @@ class State:
     """Simulation time at which the driver parked on the way; None while under way."""
     given: tuple[CommandRecord, ...] = ()
     """What was commanded, in order."""
+    told: tuple[tuple[Any, ...], Mapping[str, Any]] = ((None,) * 4, {})
+    """What ``commands`` gave last, and what that was read from."""
 
     def copy(self) -> State:
         return replace(self, vehicle=self.vehicle.copy())
@@ -372,8 +375,17 @@ class State:
         """Resets the lists whose key has this prefix to their start, since their content changed."""
         self.scrolled = {key: first for key, first in self.scrolled.items() if not key.startswith(lists)}
 
-    def commands(self) -> dict[str, Any]:
-        """Everything that can be commanded: actuators, app data, and what was irrevocably sent."""
+    def commands(self) -> Mapping[str, Any]:
+        """Everything that can be commanded: actuators, app data, and what was irrevocably sent. The same object as
+        long as nothing is: a drive keeps it once a second."""
+        sources = self.signals.actuators, self.asked, self.questions, self.kept
+        known, told = self.told
+        if not all(map(is_, sources, known)):
+            commanded = self._commanded()
+            self.told = sources, told if told == commanded else commanded
+        return self.told[1]
+
+    def _commanded(self) -> dict[str, Any]:
         commanded = self.signals.commanded() | {
             "requests": list(self.asked),
             "questions": [{"text": asked.text, "commands": asked.after} for asked in self.questions],

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
-from typing import Any
 
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
@@ -84,8 +83,6 @@ class Car:
     """The driver's; None if nothing can take it."""
     read_sign: tuple[Limit, str, str] | None = None
     """The limit that is signed here, and the unit and the country of its sign; None before departure."""
-    commands: Mapping[str, Any] = field(default_factory=dict)
-    """What was commanded at the last moment. Moments share it as long as nothing is: there is one every second."""
 
     def copy(self) -> Car:
         """An independent copy that continues exactly as this one would."""
@@ -163,8 +160,6 @@ class Car:
         self.cockpit.sense(outside, dt_s)
         if self.attention is not None:
             self.attention.passed(self.cockpit.state, dt_s)
-        if (commands := self.cockpit.commands()) != self.commands:
-            self.commands = commands
         ringing = str(self.cockpit.signals[CALL.RINGING])
         self.errands = with_cause(self.errands, driving.time_s - dt_s, driving.time_s, ringing)
         return Moment(
@@ -178,7 +173,7 @@ class Car:
             connectivity=connectivity,
             context=context,
             signals=self.cockpit.signals.snapshot(),
-            commands=self.commands,
+            commands=self.cockpit.commands(),
             sights=self.cockpit.sights,
             awareness=None if self.attention is None else self.attention.told,
             asked=tuple(errand for errand in self.errands if errand.at_s <= driving.time_s + 1e-6),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.traffic.base import Event
@@ -28,15 +28,16 @@ def driver_events(moments: Sequence[Moment]) -> Iterator[Event]:
     return (event for moment in moments for event in moment.events if event.kind.startswith("driver_"))
 
 
-def driver_line(drive: Sequence[Moment]) -> Iterator[str]:
+def driver_line(now: Moment, events: Iterable[Event]) -> Iterator[str]:
     """What the driver does because of alerts and requests as long as that is in force, then what came last as long
     as that is news; nothing if there is neither.
 
     Args:
-        drive: the last moments, as many as something may be in force.
+        now: the present moment.
+        events: the driver's reactions of as long as something may be in force.
     """
-    now, told = drive[-1], dict[str, Event]()
-    for event in driver_events(drive):
+    told = dict[str, Event]()
+    for event in events:
         for replaced in {*SPEEDS, event.kind} if event.kind in {*SPEEDS, GOES_ON} else {event.kind}:
             told.pop(replaced, None)
         told[event.kind] = event  # in the order in which they came

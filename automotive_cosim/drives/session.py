@@ -20,7 +20,7 @@ from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, refusal, spoken
 from automotive_cosim.drives.alarm import Alarm, Noticed, noticed
 from automotive_cosim.drives.changes import FAR_S, LONGEST_S
-from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
+from automotive_cosim.drives.driver import IN_FORCE_S, driver_events, driver_line
 from automotive_cosim.drives.errands import said, thanks, words_about
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, Tracker
 from automotive_cosim.drives.events.errands import carried_out
@@ -31,6 +31,7 @@ from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Baseline, JudgedSession, TakesTime, beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.interface.observe import Channel
+from automotive_cosim.traffic.base import Event
 from automotive_cosim.voice.table import check
 
 CHANGED = "something changed"
@@ -81,6 +82,8 @@ class DriveSession(JudgedSession):
     twins: list[Twin] = field(default_factory=list)
     due_anyway: dict[int, float | None] = field(default_factory=dict)
     """By number of an event, when its obligation arose in its do-nothing copy."""
+    reactions: list[tuple[float, Event]] = field(default_factory=list)
+    """What the driver did because of alerts and requests, and the time of the moment that tells of it."""
     changes: list[Noticed] = field(default_factory=list)
     """What has changed since the last observation."""
     marked: tuple[str, ...] = ()
@@ -232,7 +235,9 @@ class DriveSession(JudgedSession):
         self.changes.clear()
         vehicle = self.observation.vehicle
         if vehicle is not None:
-            lines = [noticed(self.moments[-READ_BACK:], self.marked), *driver_line(self.moments[-IN_FORCE_S:])]
+            from_s = self.moments[-IN_FORCE_S:][0].time_s
+            in_force = (event for at_s, event in self.reactions if at_s >= from_s)
+            lines = [noticed(self.moments[-READ_BACK:], self.marked), *driver_line(self.moments[-1], in_force)]
             ttc_s = vehicle.leader_time_to_collision_s
             ttc_s = None if ttc_s is None or ttc_s > FAR_S else ttc_s
             vehicle = replace(vehicle, noticed="\n".join(lines), leader_time_to_collision_s=ttc_s)
@@ -260,6 +265,7 @@ class DriveSession(JudgedSession):
         self._follow()
 
     def _note(self, moment: Moment) -> None:
+        self.reactions += ((moment.time_s, event) for event in driver_events((moment,)))
         changes = self.alarm.see(self.moments[-READ_BACK:])
         self.changes += changes
         names = tuple(change.name for change in changes if change.wakes)

@@ -24,7 +24,7 @@ import re
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import chain, starmap
+from itertools import starmap
 from math import inf, log1p, log10
 from typing import Any, NamedTuple
 
@@ -50,6 +50,7 @@ CHANNELS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
 """What the numbers are read from; no action of this view touches an element."""
 SLOTS = (48, 64)
 """Slots of the words of road and weather, and of the law's lines."""
+KINDS = tuple(AlertKind)
 READINGS = tuple(wake.name for wake in WAKES)
 """Names of the car's readings."""
 SOON_S = 2
@@ -302,15 +303,15 @@ class DriveNumbers:
         for name, sign in SIGNS.items():
             self._see(name, sign.seen(known, numbers), known.time_s)
         ages_s = (known.time_s - self._since[name][1] if name in self._since else 0.0 for name in SIGNS)
-        parts = [
-            *numbers.values(),
-            *chain.from_iterable(map(_words, texts, SLOTS)),
+        kept = [
             *(float(name in known.changed) for name in READINGS),
             *(_age(age_s) if age_s else 0.0 for age_s in ages_s),
             *(float(name in self._since and name not in self._told) for name in SIGNS),
-            *(_age(known.time_s - self._shown_s[kind]) if kind in self._shown_s else 1.0 for kind in AlertKind),
+            *(_age(known.time_s - self._shown_s[kind]) if kind in self._shown_s else 1.0 for kind in KINDS),
         ]
-        return np.array(parts, np.float32).clip(-1.0, 1.0)
+        read = np.array([*numbers.values()], np.float32)
+        np.minimum(np.maximum(read, -1.0, out=read), 1.0, out=read)
+        return np.concatenate((read, *map(_words, texts, SLOTS), np.array(kept, np.float32)))
 
     def _see(self, name: str, what: Hashable, now_s: float) -> None:
         """Notes a sign: since when it has been as it is, and whether it is still the one that was told of."""
@@ -333,10 +334,10 @@ _LOG_LONG = log1p(LONG_S)
 
 
 @lru_cache(maxsize=1024)
-def _words(lines: tuple[str, ...], slots: int) -> list[float]:
+def _words(lines: tuple[str, ...], slots: int) -> npt.NDArray[np.float32]:
     """Slots of the words of some lines, without numbers: these are features. Cached, as most
     lines are the same from second to second."""
-    return hashed(map(_without_numbers, lines), slots)
+    return np.array(hashed(map(_without_numbers, lines), slots), np.float32)
 
 
 @lru_cache(maxsize=4096)
@@ -355,7 +356,8 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
     The reward of a step is what it changed in the utility of the drive (``drives.score``), as a share of what the
     events of a usual drive are worth together: twice an event's weight once it is met, minus the cost of each
     nuisance. What an alert earns comes with the step in which the event turns out to be due; until then it may be
-    taken back. ``info`` is empty but for ``score`` and ``trace_sha256`` at the end, where ``score`` is the judge's.
+    taken back. ``info`` is empty but for ``score`` at the end, the judge's. ``env.unwrapped.episode.trace_sha256``
+    lays out the screens of the whole drive, which nobody has looked at.
     """
 
     def __init__(
@@ -374,8 +376,8 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
             families: ids of families, or one; ``automotive-cosim show drives`` lists them.
             scenario: where to drive instead of on the families' own roads.
             minutes: when a drive is over, if its script ends later.
-            lean: for training at several times the speed: SUMO in steps of a second, no screen is laid out, and
-                ``info`` holds no ``trace_sha256``. The traffic is not that of the same seed in steps of 0.1 s.
+            lean: for training, faster by half: SUMO in steps of a second, and screens are not in
+                the trace. The traffic is not that of the same seed in steps of 0.1 s.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
 
@@ -418,5 +420,5 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
         before, self._utility = self._utility, found.utility / (2 * LEAST_WORTH)
         info: dict[str, Any] = {}
         if session.end is not None:
-            info = {"score": found.value} | ({} if self._lean else {"trace_sha256": session.trace_sha256})
+            info = {"score": found.value}
         return self._numbers.read(session.observation), self._utility - before, *ended(session), info

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
+from typing import NamedTuple
 
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
@@ -18,6 +19,7 @@ from automotive_cosim.geo.place import Place
 from automotive_cosim.geo.rulefacts import CONDITIONS, RuleFacts, Test
 from automotive_cosim.geo.rules import TOPICS, Jurisdiction, Rule, Value
 from automotive_cosim.geo.sun import Sun
+from automotive_cosim.geo.text import Line
 from automotive_cosim.geo.weather import phenomena
 
 MOTORWAYS = ("motorway", "motorway_link")
@@ -102,6 +104,16 @@ def facts_at(
     )
 
 
+class RulesHere(NamedTuple):
+    """What rules say here and now."""
+
+    limits: tuple[AppliedRule, ...]
+    others: tuple[AppliedRule, ...]
+    """Those of other topics."""
+    lines: tuple[Line, ...]
+    """The same as an agent is told of them."""
+
+
 def _applied(rule: Rule, jurisdiction: str, facts: RuleFacts) -> AppliedRule:
     return AppliedRule(rule, jurisdiction, *rule.answer(facts))
 
@@ -115,20 +127,18 @@ class _Said:
         tests = dict.fromkeys(test for rule in rules for test in rule.tests)
         self._place = Place(layers=layers)
         self._conditions = tuple((CONDITIONS[test.word].holds, test.argument) for test in tests)
-        self._known: dict[Hashable, tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]] = {}
+        self._known: dict[Hashable, RulesHere] = {}
 
-    def __call__(self, facts: RuleFacts) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
-        """The limits, and the rules of other topics."""
+    def __call__(self, facts: RuleFacts) -> RulesHere:
         own = facts.road_class if facts.road_class in OWN_LAW else ""
         answers = own, *[holds(facts, argument) for holds, argument in self._conditions]
         said = self._known.get(answers)
         if said is None:
             if len(self._known) >= MOST_SAID:
                 self._known.clear()
-            said = self._known[answers] = (
-                tuple(limits(self._place, facts)),
-                tuple(_other_rules(self._place, facts)),
-            )
+            others = tuple(_other_rules(self._place, facts))
+            lines = tuple(Line(found.rule.line, found.rule.id) for found in others)
+            said = self._known[answers] = RulesHere(tuple(limits(self._place, facts)), others, lines)
         return said
 
 
@@ -138,7 +148,7 @@ MOST_SAID = 512
 """Of places, and of answers at one of them, that are kept."""
 
 
-def said_at(place: Place, facts: RuleFacts) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
+def said_at(place: Place, facts: RuleFacts) -> RulesHere:
     """``limits`` here and now, and by topic the rules of the innermost layer that has one for this road."""
     layers = tuple(map(id, place.layers))
     if layers not in _SAID:

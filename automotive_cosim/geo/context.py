@@ -13,7 +13,7 @@ from datetime import datetime
 from functools import cached_property
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
-from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, said_at
+from automotive_cosim.geo.applied import AppliedRule, RulesHere, built_up, facts_at, said_at
 from automotive_cosim.geo.binding import BindingLimit, binding
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
@@ -139,17 +139,17 @@ class GeoContext:
     def default_limits(self) -> tuple[AppliedRule, ...]:
         """The legal limits for this road: several if the network does not determine which, none if no law is
         known."""
-        return tuple(found for found in self._said[0] if found.rule.fixed)
+        return tuple(found for found in self._said.limits if found.rule.fixed)
 
     @cached_property
     def reduced_limits(self) -> tuple[AppliedRule, ...]:
         """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
-        return tuple(found for found in self._said[0] if not found.rule.fixed)
+        return tuple(found for found in self._said.limits if not found.rule.fixed)
 
     @property
     def rules(self) -> tuple[AppliedRule, ...]:
         """The other topics, in the order of ``rules.TOPICS``."""
-        return self._said[1]
+        return self._said.others
 
     @cached_property
     def country(self) -> str:
@@ -206,7 +206,7 @@ class GeoContext:
         return facts_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
 
     @cached_property
-    def _said(self) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
+    def _said(self) -> RulesHere:
         return said_at(self.place, self._facts)
 
 
@@ -245,7 +245,7 @@ def _lines(context: GeoContext) -> Iterator[Line]:
     if context.place.law:
         law = context.place.law
         yield Line(f"Country: traffic keeps {law.driving_side}; emergency call {', '.join(law.emergency)}", "place")
-    yield from (Line(found.rule.line, found.rule.id) for found in context.rules)
+    yield from context._said.lines
 
 
 def _place(context: GeoContext) -> str:

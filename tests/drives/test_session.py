@@ -24,7 +24,7 @@ from automotive_cosim.contracts.given import Language, Order
 from automotive_cosim.drives.alarm import Alarm, noticed
 from automotive_cosim.drives.changes import LONGEST_S, WAKES
 from automotive_cosim.drives.departure import depart
-from automotive_cosim.drives.driver import driver_line
+from automotive_cosim.drives.driver import driver_events, driver_line
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.order import ANSWERS, ordered
 from automotive_cosim.drives.result import judged_since
@@ -331,7 +331,7 @@ def driver_words(*events: tuple[float, str, str], until_s: float, stands_s: floa
         then = drive[int(at_s)]
         drive[int(at_s)] = replace(then, events=(*then.events, Event(at_s, f"driver_{kind}", f"driver {text}")))
     drive[-1] = replace(drive[-1], driving=replace(drive[-1].driving, standing_s=stands_s))
-    return list(driver_line(drive))
+    return list(driver_line(drive[-1], driver_events(drive)))
 
 
 def test_what_the_driver_was_asked_for_is_told_as_long_as_it_is_in_force() -> None:
