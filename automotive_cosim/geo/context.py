@@ -180,9 +180,10 @@ class GeoContext:
         """Every fact and rule with its source, the most important first."""
         return tuple(_lines(self))
 
-    @cached_property
+    @property
     def shown(self) -> tuple[Line, ...]:
-        """The lines that can matter here and now, and one that names the topics of the others."""
+        """The lines that can matter here and now, and one that names the topics of the others; not kept, as a drive
+        keeps its contexts."""
         air_c = None if self.weather is None else self.weather.temperature_2m
         told = [found.rule for found in self.rules if not found.rule.on_request]
         left = [rule for rule in told if not can_matter(rule.topic, self._facts, air_c)]

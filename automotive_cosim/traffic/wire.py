@@ -63,14 +63,18 @@ def unpack_state(packed: Packed) -> DrivingState:
     """The state that was packed."""
     row, ahead, around = list(packed), list(packed[_AHEAD_AT]), packed[_AROUND_AT]
     light = ahead[_LIGHT_AT]
-    ahead[_LIGHT_AT] = light and make_light(*light)
+    ahead[_LIGHT_AT] = light and make_light(*_interned(light))
     ahead[_ROUTE_AT], ahead[_SLOW_AT] = _same(ahead[_ROUTE_AT]), _same(ahead[_SLOW_AT])
-    road: Packed = tuple(intern(each) if type(each) is str else each for each in row[_ROAD_AT])
-    row[_ROAD_AT] = make_road(*road)
+    row[_ROAD_AT] = make_road(*_interned(row[_ROAD_AT]))
     row[_AHEAD_AT] = make_ahead(*ahead)
-    others: Packed = tuple(other and make_other(*other) for other in around[:_OTHERS])
+    others: Packed = tuple(other and make_other(*_interned(other)) for other in around[:_OTHERS])
     row[_AROUND_AT] = make_around(*others, *around[_OTHERS:])
     return make_state(*row)
+
+
+def _interned(packed: Packed) -> Packed:
+    """With names that are the same ones as before."""
+    return tuple(intern(each) if type(each) is str else each for each in packed)
 
 
 @lru_cache(maxsize=512)
