@@ -500,18 +500,18 @@ def named(path: str) -> Signal[Any]:
 
 
 class Snapshot(Mapping[str, Any]):
-    """Path and value of every signal at one instant, in a sixth of the room of a dict: a drive has one a second.
-    Those between which nothing was commanded share what is."""
+    """Path and value of every signal at one instant. A drive has one a second, so each shares with the one before
+    what has not changed."""
 
-    __slots__ = ("_commanded", "_others")
+    __slots__ = ("_parts",)
 
-    def __init__(self, commanded: tuple[Any, ...], others: tuple[Any, ...]) -> None:
-        """Of the values of the actuators, and of all other signals."""
-        self._commanded, self._others = commanded, others
+    def __init__(self, parts: tuple[tuple[Any, ...], ...]) -> None:
+        """Of the values of each of ``PARTS``."""
+        self._parts = parts
 
     def __getitem__(self, path: str) -> Any:
-        place = _PLACES[path]
-        value = self._commanded[place] if place >= 0 else self._others[~place]
+        part, place = _PLACES[path]
+        value = self._parts[part][place]
         if value is None and path in OF_ATTENTION:
             raise KeyError(path)
         return value
@@ -524,7 +524,7 @@ class Snapshot(Mapping[str, Any]):
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Snapshot):
-            return self._commanded == other._commanded and self._others == other._others
+            return self._parts == other._parts
         return self.as_dict() == other
 
     def __repr__(self) -> str:
@@ -532,16 +532,26 @@ class Snapshot(Mapping[str, Any]):
 
     def as_dict(self) -> dict[str, Any]:
         """The same in the order of the catalogue."""
-        values = dict(zip(CATALOGUE, _in_order(self._commanded + self._others), strict=True))
+        values = dict(zip(CATALOGUE, _in_order(sum(self._parts, ())), strict=True))
         if values[DRIVER.DISTRACTION.path] is None:
             del values[DRIVER.DISTRACTION.path], values[DRIVER.FATIGUE.path]
         return values
 
 
+def _is_same(before: object, now: object) -> bool:
+    """Whether two values are written alike, so one of them need not be kept: -0.0 is no 0.0."""
+    return before == now and type(before) is type(now) and (bool(now) or str(before) == str(now))
+
+
+def _unless_same(before: tuple[Any, ...], now: tuple[Any, ...]) -> tuple[Any, ...]:
+    """A part of a snapshot; that of the one before if nothing in it has changed."""
+    return before if len(before) == len(now) and all(map(is_, before, now)) else now
+
+
 class Signals:
     """The values of all signals, always valid."""
 
-    __slots__ = ("_commanded", "_values")
+    __slots__ = ("_last", "_values")
 
     def __init__(self, values: Mapping[str, Any] | None = None) -> None:
         """All at their defaults except ``values``, by path.
@@ -551,8 +561,8 @@ class Signals:
             SignalError: a value is invalid.
         """
         self._values: dict[str, Any] = {path: signal.default for path, signal in CATALOGUE.items()}
-        self._commanded: tuple[Any, ...] | None = None
-        """The actuators' values in the last snapshot."""
+        self._last: tuple[tuple[Any, ...], ...] = tuple(() for _ in PARTS)
+        """The parts of the last snapshot."""
         for path, value in (values or {}).items():
             self._values[path] = named(path).check(value)
 
@@ -561,19 +571,18 @@ class Signals:
         return value
 
     def __setitem__(self, signal: Signal[T], value: T) -> None:
-        if self._values[signal.path] is not value:
-            self._values[signal.path] = signal.check(value)
+        before = self._values[signal.path]
+        if before is not value and not _is_same(before, now := signal.check(value)):
+            self._values[signal.path] = now
 
     def __iter__(self) -> Iterator[Signal[Any]]:
         return iter(CATALOGUE.values())
 
     def snapshot(self) -> Snapshot:
         """Path and value of every signal, as they are now."""
-        commanded, last = _actuators(self._values), self._commanded
-        if last is not None and all(map(is_, commanded, last)):
-            commanded = last
-        self._commanded = commanded
-        return Snapshot(commanded, _others(self._values))
+        now = (read(self._values) for read in _READERS)
+        self._last = tuple(map(_unless_same, self._last, now))
+        return Snapshot(self._last)
 
     def picked(self, read: Callable[[Mapping[str, Any]], tuple[Any, ...]]) -> tuple[Any, ...]:
         """What a getter takes of all paths and values, without a copy of them."""
@@ -581,23 +590,34 @@ class Signals:
 
     def commanded(self) -> dict[str, Any]:
         """Path and value of every actuator; a copy."""
-        return dict(zip(ACTUATORS, _actuators(self._values), strict=True))
+        return dict(zip(ACTUATORS, _READERS[0](self._values), strict=True))
 
     def reset(self) -> None:
         self._values = {path: signal.default for path, signal in CATALOGUE.items()}
 
     def copy(self) -> Signals:
         twin = Signals.__new__(Signals)
-        twin._values, twin._commanded = self._values.copy(), self._commanded
+        twin._values, twin._last = self._values.copy(), self._last
         return twin
 
 
 ACTUATORS = tuple(path for path, signal in CATALOGUE.items() if signal.kind is LeafKind.ACTUATOR)
 """Paths of all actuators."""
-OTHERS = tuple(path for path in CATALOGUE if path not in ACTUATORS)
-_actuators, _others = itemgetter(*ACTUATORS), itemgetter(*OTHERS)
-_in_order = itemgetter(*map((*ACTUATORS, *OTHERS).index, CATALOGUE))
-_PLACES = {path: place for place, path in enumerate(ACTUATORS)} | {path: ~n for n, path in enumerate(OTHERS)}
+_MOVING = (
+    *("Vehicle.Chassis.Axle.", "Vehicle.CurrentLocation.", "Vehicle.Powertrain.", "Vehicle.Speed"),
+    *("Vehicle.Cabin.HVAC.Ambient", "Vehicle.ADAS.ObstacleDetection."),
+)
+"""How the paths begin of what changes nearly every second."""
+_SENSED = tuple(path for path in CATALOGUE if path not in ACTUATORS)
+PARTS = (
+    ACTUATORS,
+    tuple(path for path in _SENSED if path.startswith(_MOVING)),
+    tuple(path for path in _SENSED if not path.startswith(_MOVING)),
+)
+"""All paths, by how often they change."""
+_READERS = tuple(itemgetter(*part) for part in PARTS)
+_in_order = itemgetter(*map(sum(PARTS, ()).index, CATALOGUE))
+_PLACES = {path: (number, place) for number, part in enumerate(PARTS) for place, path in enumerate(part)}
 OF_ATTENTION = (DRIVER.DISTRACTION.path, DRIVER.FATIGUE.path)
 """Not in a snapshot where they are None."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
+from typing import TypeAlias
 
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
@@ -106,6 +107,9 @@ def _applied(rule: Rule, jurisdiction: str, facts: RuleFacts) -> AppliedRule:
     return AppliedRule(rule, jurisdiction, *rule.answer(facts))
 
 
+AllSaid: TypeAlias = tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...], tuple[AppliedRule, ...]]
+
+
 class _Said:
     """What the rules of some layers say, by the answers of their conditions: these are much the same from second to
     second, and a drive asks every second."""
@@ -115,20 +119,20 @@ class _Said:
         tests = dict.fromkeys(test for rule in rules for test in rule.tests)
         self._place = Place(layers=layers)
         self._conditions = tuple((CONDITIONS[test.word].holds, test.argument) for test in tests)
-        self._known: dict[Hashable, tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]] = {}
+        self._known: dict[Hashable, AllSaid] = {}
 
-    def __call__(self, facts: RuleFacts) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
-        """The limits, and the rules of other topics."""
+    def __call__(self, facts: RuleFacts) -> AllSaid:
+        """The fixed limits, the others, and the rules of other topics."""
         own = facts.road_class if facts.road_class in OWN_LAW else ""
         answers = own, *[holds(facts, argument) for holds, argument in self._conditions]
         said = self._known.get(answers)
         if said is None:
             if len(self._known) >= MOST_SAID:
                 self._known.clear()
-            said = self._known[answers] = (
-                tuple(limits(self._place, facts)),
-                tuple(_other_rules(self._place, facts)),
-            )
+            found = tuple(limits(self._place, facts))
+            fixed = tuple(each for each in found if each.rule.fixed)
+            others = tuple(each for each in found if not each.rule.fixed)
+            said = self._known[answers] = fixed, others, tuple(_other_rules(self._place, facts))
         return said
 
 
@@ -138,8 +142,9 @@ MOST_SAID = 512
 """Of places, and of answers at one of them, that are kept."""
 
 
-def said_at(place: Place, facts: RuleFacts) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
-    """``limits`` here and now, and by topic the rules of the innermost layer that has one for this road."""
+def said_at(place: Place, facts: RuleFacts) -> AllSaid:
+    """``limits`` here and now, the fixed ones first, and by topic the rules of the innermost layer that has one for
+    this road."""
     layers = tuple(map(id, place.layers))
     if layers not in _SAID:
         if len(_SAID) >= MOST_SAID:

@@ -13,7 +13,7 @@ from datetime import datetime
 from functools import cached_property
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
-from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, said_at
+from automotive_cosim.geo.applied import AllSaid, AppliedRule, built_up, facts_at, said_at
 from automotive_cosim.geo.binding import BindingLimit, binding
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
@@ -135,21 +135,21 @@ class GeoContext:
         posted = self.road.limit.posted_mps
         return None if posted is None else posted * KMH_PER_MPS
 
-    @cached_property
+    @property
     def default_limits(self) -> tuple[AppliedRule, ...]:
         """The legal limits for this road: several if the network does not determine which, none if no law is
         known."""
-        return tuple(found for found in self._said[0] if found.rule.fixed)
+        return self._said[0]
 
-    @cached_property
+    @property
     def reduced_limits(self) -> tuple[AppliedRule, ...]:
         """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
-        return tuple(found for found in self._said[0] if not found.rule.fixed)
+        return self._said[1]
 
     @property
     def rules(self) -> tuple[AppliedRule, ...]:
         """The other topics, in the order of ``rules.TOPICS``."""
-        return self._said[1]
+        return self._said[2]
 
     @cached_property
     def country(self) -> str:
@@ -185,8 +185,8 @@ class GeoContext:
         """The lines that can matter here and now, and one that names the topics of the others; not kept, as a drive
         keeps its contexts."""
         air_c = None if self.weather is None else self.weather.temperature_2m
-        told = [found.rule for found in self.rules if not found.rule.on_request]
-        left = [rule for rule in told if not can_matter(rule.topic, self._facts, air_c)]
+        told, facts = [found.rule for found in self.rules if not found.rule.on_request], self._facts
+        left = [rule for rule in told if not can_matter(rule.topic, facts, air_c)]
         ids = {rule.id for rule in left} | {found.rule.id for found in self.rules if found.rule.on_request}
         kept = tuple(line for line in self.lines if line.source not in ids)
         if not left:
@@ -198,16 +198,16 @@ class GeoContext:
         """The lines of ``shown`` as text, one fact per line: as many, from the first, as the budget allows."""
         return within_budget(self.shown, budget_tokens)
 
-    @cached_property
+    @property
     def _built_up(self) -> tuple[bool | None, str]:
         return built_up(self.road, self.place)
 
-    @cached_property
+    @property
     def _facts(self) -> RuleFacts:
         return facts_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
 
     @cached_property
-    def _said(self) -> tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...]]:
+    def _said(self) -> AllSaid:
         return said_at(self.place, self._facts)
 
 

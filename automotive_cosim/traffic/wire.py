@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 from automotive_cosim.contracts import (
     Around,
     DrivingState,
+    Limit,
     OtherVehicle,
     RoadAhead,
     RoadHere,
@@ -73,15 +74,27 @@ def unpack_state(packed: Packed) -> DrivingState:
 
 
 def _interned(packed: Packed) -> Packed:
-    """With names that are the same ones as before."""
-    return tuple(intern(each) if type(each) is str else each for each in packed)
+    """With names and limits that are the same ones as before."""
+    return tuple(
+        intern(each) if type(each) is str else _limit(each) if type(each) is Limit else each for each in packed
+    )
+
+
+@lru_cache(maxsize=512)
+def _limit(limit: Limit) -> Limit:
+    return limit
 
 
 @lru_cache(maxsize=512)
 def _same(edges: Packed) -> Packed:
     """The same route or traffic news as before, if they are: of what a drive keeps, copies of them were a third.
     The names in all of them are the same, too."""
-    return tuple(intern(each) if isinstance(each, str) else (intern(each[0]), *each[1:]) for each in edges)
+    return tuple(intern(each) if isinstance(each, str) else _pair(*each) for each in edges)
+
+
+@lru_cache(maxsize=4096)
+def _pair(edge: str, relative_speed: float) -> Packed:
+    return intern(edge), relative_speed
 
 
 def pack_advance(advance: Advance) -> Packed:
