@@ -5,7 +5,8 @@
     python benchmarks/fleet.py --cars 8 128 --minutes 5
 
 Every car only looks on (`FlatDrive-v0`, lean, waits of two seconds), so the judges' do-nothing drives, which are
-simulations of their own from the first alert on, are not in the figures. Memory is that of all processes (PSS).
+simulations of their own from the first alert on, are not in the figures, unless with `--act`. Memory is that of all
+processes (PSS).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.cosim.simulation import couple
 from automotive_cosim.drives.session import DriveSession
-from automotive_cosim.envs.flat_drive import CHANNELS, FlatDriveEnv
+from automotive_cosim.envs.flat_drive import CHANNELS, SOON, FlatDriveEnv
 from automotive_cosim.envs.fleet import FleetVectorEnv
 from automotive_cosim.envs.vector import ConcurrentVectorEnv
 from automotive_cosim.episode.fleet import Fleet
@@ -43,14 +44,17 @@ ENTER_STEPS = 600
 """In these at most, all cars enter, each where its trip begins as soon as there is a gap; nothing is timed."""
 COLUMNS = ("", "cars", "in traffic", "act in a step", "decisions a second", "ms a decision", "of a processor")
 COLUMNS += ("MB", "MB a car")
+ALERT = SOON + 1
+"""Number of an action of the environment that is an alert; ``SOON`` is a wait of two seconds."""
 LEAST_STEPS = 20
 """The same at least."""
 LOOK_STEPS = 30
 """After so many steps each, the memory is looked at."""
 
 
-def measured(kind: str, cars: int, scenario: str, steps: int, minutes: float | None) -> str:
-    """A row of Markdown; with minutes, of a whole episode of drives that last so long."""
+def measured(kind: str, cars: int, scenario: str, steps: int, minutes: float | None, act: int) -> str:
+    """A row of Markdown; with minutes, of a whole episode of drives that last so long. As each car has entered, it
+    does the action of that number."""
     make = partial(FlatDriveEnv, FAMILY, scenario=scenario, lean=True, minutes=minutes)
     before_mb = pss_mb()
     if kind == "fleet":
@@ -58,7 +62,7 @@ def measured(kind: str, cars: int, scenario: str, steps: int, minutes: float | N
     else:
         envs = ConcurrentVectorEnv([make] * cars)
     envs.reset(seed=1)
-    waits = np.ones(cars, np.int64)
+    waits = np.full(cars, SOON)
     entered: set[str] = set()
     for number in range(0 if minutes else ENTER_STEPS):
         entered |= set(envs.fleet.agents) if isinstance(envs, FleetVectorEnv) else {str(car) for car in range(cars)}
@@ -68,8 +72,10 @@ def measured(kind: str, cars: int, scenario: str, steps: int, minutes: float | N
     driven = len(envs.fleet.agents) if isinstance(envs, FleetVectorEnv) else cars
     decisions, number, most_mb, begun_s, worked_s = 0, 0, 0.0, time.perf_counter(), processor_s()
     info: dict[str, Any] = {}
+    waits[:] = act
     while "final_obs" not in info if minutes else number < steps:
         info = envs.step(waits)[4]
+        waits[np.broadcast_to(info.get("acted", True), cars)] = SOON
         decisions += int(info["acted"].sum()) if kind == "fleet" else cars
         number += 1
         if isinstance(envs, FleetVectorEnv) and minutes:
@@ -159,11 +165,13 @@ def main() -> None:
     parser.add_argument("--equipped", type=int, nargs="*", default=[], help="cars that drive anyway, with cockpits")
     parser.add_argument("--scale", type=float, default=2.0, help="factor on the traffic of these")
     parser.add_argument("--minutes", type=float, help="time whole episodes of fleets, of drives that last so long")
+    parser.add_argument("--act", action="store_true", help="let each car give an alert once, at first")
     given = parser.parse_args()
+    act = ALERT if given.act else SOON
     print(f"| {' | '.join(COLUMNS)} |\n|---{(len(COLUMNS) - 1) * '|--:'}|")
     for kind, counts in (("fleet", given.cars), ("copies", given.copies)):
         for count in counts:
-            print(measured(kind, count, given.scenario, given.steps, given.minutes), flush=True)
+            print(measured(kind, count, given.scenario, given.steps, given.minutes, act), flush=True)
     for count in given.equipped:
         print(equipped(count, given.scenario, given.steps, given.scale), flush=True)
 

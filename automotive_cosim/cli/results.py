@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +16,8 @@ from automotive_cosim.errors import install_hint
 
 if TYPE_CHECKING:
     from automotive_cosim.run.effect import ActEffect
+    from automotive_cosim.run.observer import TrialObserver
+    from automotive_cosim.run.trial import TrialSetup
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 
@@ -124,20 +127,30 @@ def replay(
         list[int] | None,
         typer.Option(help="Leave out what this step commanded, and say what that changes; may be repeated."),
     ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="New folder for what is replayed, with its pictures.", show_default=False)
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Replay the actions of a stored run and compare the traces.
 
-    Exit code 1 if the traces differ.
+    A car of a fleet is replayed with all cars of it. Exit code 1 if the traces differ.
     """
+    from automotive_cosim.report.page import write_page
+    from automotive_cosim.run.record import check_folder
     from automotive_cosim.run.rerun import rerun
+    from automotive_cosim.run.trial_folder import read_trial
 
     if without:
         from automotive_cosim.run.attribution import attribute as measured
 
         _tell_effects(measured(folder, episode, without), as_json=as_json)
         return
-    compared = rerun(folder, episode)
+    if out is not None:
+        check_folder(out, force=False)
+    compared = rerun(folder, episode, partial(_keeping, out))
+    if out is not None and "task" in read_trial(out)["row"]:
+        write_page(out)
     different = [step for step in compared if step.differs]
     if as_json:
         print_json({"ok": not different, "steps": [asdict(step) for step in compared]})
@@ -151,3 +164,17 @@ def replay(
         )
         raise typer.Exit(1)
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
+
+
+def _keeping(out: Path | None, job: TrialSetup) -> Sequence[TrialObserver]:
+    """What records a trial that is replayed as `run` does, in a folder; nothing without one."""
+    from automotive_cosim.report.film import Film
+    from automotive_cosim.run.episode import EpisodeSetup
+    from automotive_cosim.run.record import Recorder
+    from automotive_cosim.run.road_recorder import RoadRecorder
+
+    if out is None:
+        return ()
+    is_task = isinstance(job, EpisodeSetup)
+    kept = Recorder(job, out, {"out": str(out)}, whole=is_task), RoadRecorder(out, job.about)
+    return (*kept, Film(out)) if is_task else kept

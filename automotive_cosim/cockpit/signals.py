@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from math import inf
-from operator import itemgetter
+from operator import is_, itemgetter
 from typing import Any, Generic, TypeVar, cast
 
 from automotive_cosim.errors import SignalError, UnknownNameError
@@ -500,18 +500,18 @@ def named(path: str) -> Signal[Any]:
 
 
 class Snapshot(Mapping[str, Any]):
-    """Path and value of every signal at one instant, in a sixth of the room of a dict: a drive has one a second.
-    Those between which nothing was commanded share what is."""
+    """Path and value of every signal at one instant. A drive has one a second, so each shares with the one before
+    what has not changed."""
 
-    __slots__ = ("_commanded", "_others")
+    __slots__ = ("_parts",)
 
-    def __init__(self, commanded: tuple[Any, ...], others: tuple[Any, ...]) -> None:
-        """Of the values of the actuators, and of all other signals."""
-        self._commanded, self._others = commanded, others
+    def __init__(self, parts: tuple[tuple[Any, ...], ...]) -> None:
+        """Of the values of each of ``PARTS``."""
+        self._parts = parts
 
     def __getitem__(self, path: str) -> Any:
-        place = _PLACES[path]
-        value = self._commanded[place] if place >= 0 else self._others[~place]
+        part, place = _PLACES[path]
+        value = self._parts[part][place]
         if value is None and path in OF_ATTENTION:
             raise KeyError(path)
         return value
@@ -524,7 +524,7 @@ class Snapshot(Mapping[str, Any]):
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Snapshot):
-            return self._commanded == other._commanded and self._others == other._others
+            return self._parts == other._parts
         return self.as_dict() == other
 
     def __repr__(self) -> str:
@@ -532,16 +532,26 @@ class Snapshot(Mapping[str, Any]):
 
     def as_dict(self) -> dict[str, Any]:
         """The same in the order of the catalogue."""
-        values = dict(zip(CATALOGUE, _in_order(self._commanded + self._others), strict=True))
+        values = dict(zip(CATALOGUE, _in_order(sum(self._parts, ())), strict=True))
         if values[DRIVER.DISTRACTION.path] is None:
             del values[DRIVER.DISTRACTION.path], values[DRIVER.FATIGUE.path]
         return values
 
 
+def _is_same(before: object, now: object) -> bool:
+    """Whether two values are written alike, so one of them need not be kept: -0.0 is no 0.0."""
+    return before == now and type(before) is type(now) and (bool(now) or str(before) == str(now))
+
+
+def _unless_same(before: tuple[Any, ...], now: tuple[Any, ...]) -> tuple[Any, ...]:
+    """A part of a snapshot; that of the one before if nothing in it has changed."""
+    return before if len(before) == len(now) and all(map(is_, before, now)) else now
+
+
 class Signals:
     """The values of all signals, always valid."""
 
-    __slots__ = ("_commanded", "_values")
+    __slots__ = ("_commanded", "_sensed", "_values")
 
     def __init__(self, values: Mapping[str, Any] | None = None) -> None:
         """All at their defaults except ``values``, by path.
@@ -553,6 +563,8 @@ class Signals:
         self._values: dict[str, Any] = {path: signal.default for path, signal in CATALOGUE.items()}
         self._commanded: tuple[Any, ...] | None = None
         """The actuators' values, once somebody has asked for them since one was set."""
+        self._sensed: tuple[tuple[Any, ...], ...] = tuple(() for _ in _READERS)
+        """The other parts of the last snapshot."""
         for path, value in (values or {}).items():
             self._values[path] = named(path).check(value)
 
@@ -561,8 +573,9 @@ class Signals:
         return value
 
     def __setitem__(self, signal: Signal[T], value: T) -> None:
-        if self._values[signal.path] is not value:
-            self._values[signal.path] = signal.check(value)
+        before = self._values[signal.path]
+        if before is not value and not _is_same(before, now := signal.check(value)):
+            self._values[signal.path] = now
             if signal.kind is LeafKind.ACTUATOR:
                 self._commanded = None
 
@@ -571,7 +584,9 @@ class Signals:
 
     def snapshot(self) -> Snapshot:
         """Path and value of every signal, as they are now."""
-        return Snapshot(self.actuators, _others(self._values))
+        now = (read(self._values) for read in _READERS)
+        self._sensed = tuple(map(_unless_same, self._sensed, now))
+        return Snapshot((self.actuators, *self._sensed))
 
     @property
     def actuators(self) -> tuple[Any, ...]:
@@ -595,25 +610,37 @@ class Signals:
 
     def copy(self) -> Signals:
         twin = Signals.__new__(Signals)
-        twin._values, twin._commanded = self._values.copy(), self._commanded
+        twin._values, twin._sensed = self._values.copy(), self._sensed
+        twin._commanded = self._commanded
         return twin
 
 
 ACTUATORS = tuple(path for path, signal in CATALOGUE.items() if signal.kind is LeafKind.ACTUATOR)
 """Paths of all actuators."""
-OTHERS = tuple(path for path in CATALOGUE if path not in ACTUATORS)
-_actuators, _others = itemgetter(*ACTUATORS), itemgetter(*OTHERS)
-_in_order = itemgetter(*map((*ACTUATORS, *OTHERS).index, CATALOGUE))
-_PLACES = {path: place for place, path in enumerate(ACTUATORS)} | {path: ~n for n, path in enumerate(OTHERS)}
+_MOVING = (
+    *("Vehicle.Chassis.Axle.", "Vehicle.CurrentLocation.", "Vehicle.Powertrain.", "Vehicle.Speed"),
+    *("Vehicle.Cabin.HVAC.Ambient", "Vehicle.ADAS.ObstacleDetection."),
+)
+"""How the paths begin of what changes nearly every second."""
+_SENSED = tuple(path for path in CATALOGUE if path not in ACTUATORS)
+PARTS = (
+    ACTUATORS,
+    tuple(path for path in _SENSED if path.startswith(_MOVING)),
+    tuple(path for path in _SENSED if not path.startswith(_MOVING)),
+)
+"""All paths, by how often they change."""
+_actuators, *_READERS = (itemgetter(*part) for part in PARTS)
+_in_order = itemgetter(*map(sum(PARTS, ()).index, CATALOGUE))
+_PLACES = {path: (number, place) for number, part in enumerate(PARTS) for place, path in enumerate(part)}
 
 
 def picker(paths: Sequence[str]) -> Callable[[Mapping[str, Any]], tuple[Any, ...]]:
     """A function that takes the values of several paths at once from a snapshot, or from any paths and values."""
     named: Callable[[Mapping[str, Any]], tuple[Any, ...]] = itemgetter(*paths)
-    placed: Callable[[tuple[Any, ...]], tuple[Any, ...]] = itemgetter(*map((*ACTUATORS, *OTHERS).index, paths))
+    placed: Callable[[tuple[Any, ...]], tuple[Any, ...]] = itemgetter(*map(sum(PARTS, ()).index, paths))
 
     def pick(values: Mapping[str, Any]) -> tuple[Any, ...]:
-        return placed(values._commanded + values._others) if isinstance(values, Snapshot) else named(values)
+        return placed(sum(values._parts, ())) if isinstance(values, Snapshot) else named(values)
 
     return pick
 

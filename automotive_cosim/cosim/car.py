@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from functools import lru_cache
 
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
@@ -189,13 +190,15 @@ class Car:
         if not self.alternatives:
             return driving
         route = driving.ahead.route_edges
-        still = tuple(
-            way if way.edges[0] == route[0] else replace(way, edges=way.edges[way.edges.index(route[0]) :])
-            for way in self.alternatives
-            if route and route[0] in way.edges
-        )
+        still = (_rest(way, route[0]) for way in self.alternatives if route and route[0] in way.edges)
         others = tuple(way for way in still if way.edges != route)
         return with_ahead(driving, with_alternatives(driving.ahead, others))
+
+
+@lru_cache(maxsize=1024)
+def _rest(way: RouteOption, edge: str) -> RouteOption:
+    """A route from one of its edges on: the same one as long as the car is on it."""
+    return way if way.edges[0] == edge else replace(way, edges=way.edges[way.edges.index(edge) :])
 
 
 def with_cause(errands: Iterable[Errand], since_s: float, now_s: float, ringing: str) -> tuple[Errand, ...]:

@@ -107,15 +107,20 @@ def facts_at(
 class RulesHere(NamedTuple):
     """What rules say here and now."""
 
-    limits: tuple[AppliedRule, ...]
+    fixed_limits: tuple[AppliedRule, ...]
+    reduced_limits: tuple[AppliedRule, ...]
+    """Those under conditions of weather, light or hour."""
     others: tuple[AppliedRule, ...]
     """Those of other topics."""
     lines: tuple[Line, ...]
-    """The same as an agent is told of them."""
+    """The others as an agent is told of them."""
 
 
 def _applied(rule: Rule, jurisdiction: str, facts: RuleFacts) -> AppliedRule:
     return AppliedRule(rule, jurisdiction, *rule.answer(facts))
+
+
+AllSaid: TypeAlias = tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...], tuple[AppliedRule, ...]]
 
 
 class _Said:
@@ -136,9 +141,14 @@ class _Said:
         if said is None:
             if len(self._known) >= MOST_SAID:
                 self._known.clear()
+            found = tuple(limits(self._place, facts))
             others = tuple(_other_rules(self._place, facts))
-            lines = tuple(Line(found.rule.line, found.rule.id) for found in others)
-            said = self._known[answers] = RulesHere(tuple(limits(self._place, facts)), others, lines)
+            said = self._known[answers] = RulesHere(
+                tuple(each for each in found if each.rule.fixed),
+                tuple(each for each in found if not each.rule.fixed),
+                others,
+                tuple(Line(each.rule.line, each.rule.id) for each in others),
+            )
         return said
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, RoadHere
 from automotive_cosim.geo.applied import AppliedRule
@@ -46,8 +47,7 @@ def binding(road: RoadHere, default: AppliedRule | None, reduced: Sequence[Appli
     signed = here.is_posted
     found: list[BindingLimit] = []
     if here.posted_mps is not None:
-        words = f"{here.words} {road.name or 'this road'}"
-        found.append(BindingLimit(here, SIGN, words, "sign", Status.VERIFIED))
+        found.append(_of_sign(here, road.name))
     elif not signed and default is not None:
         found += _of_rule(default)
     for lower in reduced:
@@ -56,6 +56,12 @@ def binding(road: RoadHere, default: AppliedRule | None, reduced: Sequence[Appli
     if signed and default is not None and default.rule.caps:
         found += _of_rule(default)
     return min(found, key=lambda limit: limit.kmh, default=None)
+
+
+@lru_cache(maxsize=1024)
+def _of_sign(limit: Limit, road: str) -> BindingLimit:
+    """The same one from second to second: drives keep them."""
+    return BindingLimit(limit, SIGN, f"{limit.words} {road or 'this road'}", "sign", Status.VERIFIED)
 
 
 def _of_rule(applied: AppliedRule) -> Iterator[BindingLimit]:

@@ -135,16 +135,16 @@ class GeoContext:
         posted = self.road.limit.posted_mps
         return None if posted is None else posted * KMH_PER_MPS
 
-    @cached_property
+    @property
     def default_limits(self) -> tuple[AppliedRule, ...]:
         """The legal limits for this road: several if the network does not determine which, none if no law is
         known."""
-        return tuple(found for found in self._said.limits if found.rule.fixed)
+        return self._said.fixed_limits
 
-    @cached_property
+    @property
     def reduced_limits(self) -> tuple[AppliedRule, ...]:
         """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
-        return tuple(found for found in self._said.limits if not found.rule.fixed)
+        return self._said.reduced_limits
 
     @property
     def rules(self) -> tuple[AppliedRule, ...]:
@@ -180,12 +180,13 @@ class GeoContext:
         """Every fact and rule with its source, the most important first."""
         return tuple(_lines(self))
 
-    @cached_property
+    @property
     def shown(self) -> tuple[Line, ...]:
-        """The lines that can matter here and now, and one that names the topics of the others."""
+        """The lines that can matter here and now, and one that names the topics of the others; not kept, as a drive
+        keeps its contexts."""
         air_c = None if self.weather is None else self.weather.temperature_2m
-        told = [found.rule for found in self.rules if not found.rule.on_request]
-        left = [rule for rule in told if not can_matter(rule.topic, self._facts, air_c)]
+        told, facts = [found.rule for found in self.rules if not found.rule.on_request], self._facts
+        left = [rule for rule in told if not can_matter(rule.topic, facts, air_c)]
         ids = {rule.id for rule in left} | {found.rule.id for found in self.rules if found.rule.on_request}
         kept = tuple(line for line in self.lines if line.source not in ids)
         if not left:
@@ -197,11 +198,11 @@ class GeoContext:
         """The lines of ``shown`` as text, one fact per line: as many, from the first, as the budget allows."""
         return within_budget(self.shown, budget_tokens)
 
-    @cached_property
+    @property
     def _built_up(self) -> tuple[bool | None, str]:
         return built_up(self.road, self.place)
 
-    @cached_property
+    @property
     def _facts(self) -> RuleFacts:
         return facts_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
 

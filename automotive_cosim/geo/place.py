@@ -159,6 +159,7 @@ class Atlas:
             for name in sorted(path.name for path in folder.iterdir() if path.suffix == ".toml"):
                 self._files.setdefault(name.removesuffix(".toml"), folder / name)
         self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
+        self._last = NOWHERE
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by its folders only: whoever unpickles it reads the files again."""
@@ -181,7 +182,7 @@ class Atlas:
         country = country_at(zone, lon_deg, lat_deg)
         layers = tuple(self._layers(LAW_OF.get(country, country), lon_deg, lat_deg))
         inner = {layer.kind: layer.name for layer in layers if country not in LAW_OF}
-        return Place(
+        found = Place(
             country=country,
             country_name=inner.get("country", _country_names().get(country, "")),
             region=inner.get("region", ""),
@@ -190,6 +191,9 @@ class Atlas:
             near_border_to=self._neighbours(lon_deg, lat_deg, country, layers),
             layers=layers,
         )
+        if found != self._last:  # drives keep their places, and nearly all are the same
+            self._last = found
+        return self._last
 
     def country_at(self, lon_deg: float, lat_deg: float) -> str:
         """ISO 3166-1 code of the country of a position; empty at sea. Much faster than its whole place."""

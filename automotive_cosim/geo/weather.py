@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from enum import StrEnum
-from functools import cache
+from functools import cache, lru_cache
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import UserError
@@ -163,6 +163,7 @@ def _of_code(code: int) -> frozenset[str]:
     return frozenset(word for codes, names in _PHENOMENA_OF_CODE.items() if code in codes for word in names)
 
 
+@lru_cache(maxsize=256)
 def phenomena(weather: Weather) -> frozenset[str]:
     """The weather in the words of ``PHENOMENA``.
 

@@ -7,7 +7,7 @@ its questions, and what it made of the answers, are compared too. Of other agent
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,14 +23,14 @@ from automotive_cosim.models.base import ChatMessage, ModelReply, digest
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
-from automotive_cosim.run.drive import JudgedDrive
+from automotive_cosim.run.drive import DriveSetup, JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.moments import Judged, in_its_fields, judged_file, read_judged
 from automotive_cosim.run.record import Recorder
-from automotive_cosim.run.rerun import Player, compare, played
+from automotive_cosim.run.rerun import Player, Recorded, compare, of_drive, played, played_together
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
-from automotive_cosim.run.trial import TrialSetup
+from automotive_cosim.run.trial import TrialRun, TrialSetup
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
@@ -71,16 +71,43 @@ def replay(folder: Path, job: TrialSetup, row: TrialRow, simulations: Simulation
     *steps, last = read_trace(folder, row.id)
     agent = _answered(job, row, steps)
     if agent is not None:
-        again = played(job, steps, agent.channels, simulations=simulations, player=agent)
+        again = played(Recorded(job, steps, agent.channels), simulations=simulations, player=agent)
         if not agent.asks_otherwise:
             return Replayed(tuple(_differences(folder, row, steps, last, *again, OF_ITS_THOUGHTS)), True)
     found: tuple[Problem, ...] = ()
     for channels in [frozenset(row.channels)] if isinstance(row, DriveTrialRow) else _channels(job, steps):
-        again = played(job, steps, channels, row.agent_error, simulations=simulations)
+        again = played(Recorded(job, steps, channels, row.agent_error), simulations=simulations)
         found = tuple(_differences(folder, row, steps, last, *again))
         if not found:
             break
     return Replayed(found, None if agent is None else False)
+
+
+def replay_fleet(
+    folder: Path, cars: Sequence[DriveSetup], rows: Mapping[str, TrialRow], simulations: Simulations
+) -> Replayed:
+    """The same of a fleet, all of whose cars drive again.
+
+    Args:
+        cars: all of the fleet.
+        rows: theirs, by id.
+
+    Raises:
+        CosimError: it cannot be replayed.
+    """
+    recorders = [Recorder(car, None) for car in cars]
+    stored = [of_drive(folder, car, rows.get(car.id)) for car in cars]
+    runs = [TrialRun(car.job, car.player, (each,)) for car, each in zip(stored, recorders, strict=True)]
+    found = []
+    for new_row, again in zip(played_together(runs, simulations), recorders, strict=True):
+        row = rows[new_row.id]
+        if row.error_kind != new_row.error_kind:
+            why = f"its drive ends with {new_row.error_kind} instead of {row.error_kind} when its fleet is replayed"
+            found.append(Problem(ROWS, row.id, why))
+        elif row.error is None:
+            *steps, last = read_trace(folder, row.id)
+            found += _differences(folder, row, steps, last, new_row, again)
+    return Replayed(tuple(found), None)
 
 
 class _Answered(Player):

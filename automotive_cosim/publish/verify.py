@@ -24,7 +24,7 @@ import numpy as np
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.errors import CosimError, NoRoomError, UserError
 from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.formats.limited import LimitedProcesses
 from automotive_cosim.formats.writing import drafted
@@ -32,9 +32,9 @@ from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, Contents, counts, read_contents
 from automotive_cosim.publish.episodes import check_trial
 from automotive_cosim.publish.problems import ROWS, Problem, differences
-from automotive_cosim.publish.replays import Replayed, replay
+from automotive_cosim.publish.replays import Replayed, replay, replay_fleet
 from automotive_cosim.run.coverage import Coverage, coverage
-from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.hidden import COMMITTED, commitment
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.plan import Plan, make_plan
@@ -115,8 +115,9 @@ def verify(
         for number, found in enumerate(processes.map(partial(check_trial, folder), jobs, rows), start=1):
             problems += found
             tell(number, len(names))
-        drawn = _sample(read.rows, replays, seed)
-        again = [_replayed(folder, read.jobs[name], read.rows[name]) for name in drawn]
+        groups = _sample(read.jobs, read.rows, replays, seed)
+        again = [_replayed(folder, group, read.rows) for group in groups]
+        drawn = [job.id for group in groups for job in group if read.rows[job.id].outcome is not None]
         problems += [problem for each in again for problem in each.problems]
     judged = sum(row.outcome is not None for row in read.rows.values())
     contents = read.contents
@@ -289,22 +290,32 @@ def _count_problems(
     yield from differences(NAME, "", told, whole, ("suite", "counts"), f"{MANIFEST} and {ROWS}")
 
 
-def _sample(rows: Mapping[str, TrialRow], count: int, seed: int) -> list[str]:
-    """Judged episodes, drawn with this seed; a car of a fleet cannot be driven again by itself."""
-    judged = {name: row for name, row in rows.items() if row.outcome is not None}
-    names = sorted(
-        name for name, row in judged.items() if not isinstance(row, DriveTrialRow) or not row.settings.cars
-    )
+def _sample(
+    jobs: Mapping[str, TrialSetup], rows: Mapping[str, TrialRow], count: int, seed: int
+) -> list[Sequence[TrialSetup]]:
+    """Judged episodes, drawn with this seed; of fleets all cars together, if they left what it takes."""
+    groups: dict[str, Sequence[TrialSetup]] = {}
+    for job in jobs.values():
+        cars = job.fleet if isinstance(job, DriveSetup) and job.fleet else (job,)
+        has_gone = (rows[car.id].error_kind == NoRoomError.__name__ for car in cars[1:] if car.id in rows)
+        ended = [car.id in rows and rows[car.id].outcome is not None for car in cars]
+        if sum(ended) + sum(has_gone) == len(cars):
+            groups[cars[0].id] = cars
+    names = sorted(groups)
     drawn = np.random.default_rng(seed).permutation(len(names))[:count]
-    return [names[number] for number in sorted(drawn)]
+    return [groups[names[number]] for number in sorted(drawn)]
 
 
-def _replayed(folder: Path, job: TrialSetup, row: TrialRow) -> Replayed:
+def _replayed(folder: Path, jobs: Sequence[TrialSetup], rows: Mapping[str, TrialRow]) -> Replayed:
+    """What comes of an episode, or of all cars of a fleet."""
+    first, cars = jobs[0], [job for job in jobs if isinstance(job, DriveSetup) and job.fleet]
     try:
         with closing(Simulations()) as simulations:
-            return replay(folder, job, row, simulations)
+            if cars:
+                return replay_fleet(folder, cars, rows, simulations)
+            return replay(folder, first, rows[first.id], simulations)
     except CosimError as error:
-        return Replayed((Problem(f"traces/{row.id}", "", f"cannot be replayed: {error}"),), None)
+        return Replayed((Problem(f"traces/{first.id}", "", f"cannot be replayed: {error}"),), None)
 
 
 def _asked(again: Sequence[Replayed]) -> Iterator[str]:

@@ -349,16 +349,22 @@ def shown_car(car: str, row: DriveTrialRow) -> FleetCar:
         met = f"{row.score.met} of {row.score.events}"
         cells = str(row.seed), f"{row.score.value:.0f}", met, str(row.score.nuisances), str(row.steps)
         words = f"{met} events met, {counted(row.score.nuisances, 'nuisance')}"
-    return FleetCar(car, kind, words, cells, error)
+    return FleetCar(car, kind, "; ".join(filter(None, (words, _unanswered(row)))), cells, error)
+
+
+def _unanswered(row: DriveTrialRow) -> str:
+    """In how many steps its agent gave no action, and why at first; empty if it always gave one."""
+    return f"no action in {counted(row.malformed, 'step')}, at first: {row.malformed_why}" if row.malformed else ""
 
 
 def _cars(rows: Sequence[DriveTrialRow]) -> Table:
     """Every car of every fleet."""
     lines = tuple(
-        (f"{row.name}, seed {row.seed - row.car}", contestant(row).label, car_named(row.car), *car.cells, car.error)
+        (f"{row.name}, seed {row.seed - row.car}", contestant(row).label, car.name, *car.cells, why)
         for row in sorted(rows, key=lambda row: (row.name, row.seed - row.car, contestant(row).label, row.car))
         if row.settings.cars
         for car in [shown_car(car_named(row.car), row)]
+        for why in [car.error or _unanswered(row)]
     )
     heads = "Fleet", "Watcher", "Car", *OF_A_CAR, "Failure"
     return Table("cars", "Cars of fleets", heads, lines, "What failed in one car is that car's alone.", heads=3)

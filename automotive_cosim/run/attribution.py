@@ -71,7 +71,7 @@ def attribute(
         if only is not None:
             return [without(forks, only)]
         found = [*effects(forks), *_missing(forks)]
-    path = path_of(folder, stored[0].id)
+    path = path_of(folder, stored.job.id)
     make_folder(path.parent)
     write_whole(path, json.dumps({"acts": [asdict(each) for each in found]}, indent=1) + "\n")
     return found

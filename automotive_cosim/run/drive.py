@@ -44,6 +44,11 @@ class DriveSetup(DriveSpec, TrialSetup):  # pyright: ignore[reportIncompatibleVa
         return [replace(self, car=number, seed=self.seed + number) for number in range(self.settings.cars or 1)]
 
     @property
+    def fleet(self) -> Sequence[DriveSetup]:
+        """All cars of its fleet, itself among them; none of a drive alone."""
+        return replace(self, car=0, seed=self.seed - self.car).cars if self.settings.cars else ()
+
+    @property
     def wall_s(self) -> float:
         return self.limits.longest_s * (self.settings.cars or 1)
 

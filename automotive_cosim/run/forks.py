@@ -92,8 +92,7 @@ def forked(trial: Recorded, simulations: Simulations) -> Iterator[Forks]:
         UserError: something in it does not exist.
         InfrastructureError: the simulation failed, or does not repeat the trial.
     """
-    job, stored, channels, failure = trial
-    with closing(Forks(job.seed)) as forks:
+    with closing(Forks(trial.job.seed)) as forks:
 
         class Forking(Player):
             def act(self, observation: Observation) -> Action:
@@ -101,11 +100,9 @@ def forked(trial: Recorded, simulations: Simulations) -> Iterator[Forks]:
                 forks.foresee(action)
                 return action
 
-        player = Forking(stored[1:], channels, failure)
-        _, record = played(
-            job, stored, channels, failure, simulations=simulations, observers=(forks,), player=player
-        )
-        again = compare(stored, [line for line in record.lines if "step" in line])
+        player = Forking(trial.steps[1:], trial.channels, trial.failure)
+        _, record = played(trial, simulations=simulations, observers=(forks,), player=player)
+        again = compare(trial.steps, [line for line in record.lines if "step" in line])
         if wrong := next((step for step in again if step.differs), None):
             raise InfrastructureError(
                 f"step {wrong.number} differs from the record in {', '.join(wrong.differs)}; nothing can be said "

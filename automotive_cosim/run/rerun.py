@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Iterator, Sequence
-from contextlib import closing
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
-from typing import TypeAlias, cast
+from typing import cast
 
 from automotive_cosim.agents import PROFILES, AgentSettings, NativeAgent, is_remote, make_agent
 from automotive_cosim.agents.a2a import CHANNELS
@@ -21,6 +21,7 @@ from automotive_cosim.errors import (
     ActionError,
     AgentError,
     InfrastructureError,
+    NoRoomError,
     OutOfBudgetError,
     UserError,
 )
@@ -33,6 +34,7 @@ from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup, read_setup
+from automotive_cosim.run.fleet import run_fleet
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.plan import make_plan
@@ -40,7 +42,7 @@ from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.run.store import read_evaluation, read_trace
-from automotive_cosim.run.trial import TrialSetup, run_trial
+from automotive_cosim.run.trial import TrialRun, TrialSetup, run_trial
 from automotive_cosim.run.trial_folder import is_trial, read_steps, read_trial
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import agent_of
@@ -64,17 +66,46 @@ class Compared:
     step."""
 
 
-Recorded: TypeAlias = tuple[TrialSetup, Sequence[Json], frozenset[Channel], str | None]
-"""A stored trial: what was run, the steps of its trace, its agent's channels, and how the agent's side failed."""
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """A stored trial."""
+
+    job: TrialSetup
+    """What was run."""
+    steps: Sequence[Json]
+    """Of its trace."""
+    channels: frozenset[Channel]
+    """Those of its agent, on which the answers to queries depend."""
+    failure: str | None = None
+    """How the agent's side failed after these steps, if it did."""
+    beside: Sequence[Recorded] = ()
+    """The other cars of its fleet."""
+
+    @property
+    def player(self) -> Player:
+        """Who acts as recorded."""
+        return Player(self.steps[1:], self.channels, self.failure)
 
 
-def rerun(folder: Path, trial: str = "") -> list[Compared]:
-    """Plays the actions of a stored trial in the same setup and compares step by step; arguments and errors are
+def _nobody(job: TrialSetup) -> Sequence[TrialObserver]:
+    return ()
+
+
+def rerun(
+    folder: Path, trial: str = "", observers: Callable[[TrialSetup], Sequence[TrialObserver]] = _nobody
+) -> list[Compared]:
+    """Plays the actions of a stored trial in the same setup and compares step by step; folder, trial and errors are
     those of ``recorded``.
 
-    Raises InfrastructureError: the simulation failed."""
-    job, stored, channels, failure = recorded(folder, trial)
-    return compare(stored, [line for line in played(job, stored, channels, failure)[1].lines if "step" in line])
+    Args:
+        observers: makes those that are notified of everything as it happens.
+
+    Raises:
+        InfrastructureError: the simulation failed.
+    """
+    stored = recorded(folder, trial)
+    _, again = played(stored, observers=observers(stored.job))
+    return compare(stored.steps, [line for line in again.lines if "step" in line])
 
 
 def recorded(folder: Path, trial: str = "") -> Recorded:
@@ -100,12 +131,27 @@ def recorded(folder: Path, trial: str = "") -> Recorded:
         )
     if row.error is not None:
         raise UserError(f"{name} ended in an error and has no trace: {row.error}")
-    stored = [line for line in read_trace(folder, job.id) if "step" in line]
     if isinstance(row, DriveTrialRow):
-        return job, stored, frozenset(row.channels), row.agent_error
+        fleet = job.fleet if isinstance(job, DriveSetup) else ()
+        beside = [of_drive(folder, car, rows.get(car.id)) for car in fleet if car.id != name]
+        return replace(of_drive(folder, job, row), beside=beside)
+    stored = [line for line in read_trace(folder, job.id) if "step" in line]
     with closing(ForkServer()) as fork_server, agent_of(job, fork_server) as agent:
         channels = frozenset(agent.channels)
-    return job, stored, channels, row.agent_error
+    return Recorded(job, stored, channels, row.agent_error)
+
+
+def of_drive(folder: Path, job: TrialSetup, row: TrialRow | None) -> Recorded:
+    """A stored drive; of a car that found no gap, there is nothing to play.
+
+    Raises UserError: it has no trace otherwise, or that cannot be read."""
+    if isinstance(row, DriveTrialRow) and row.error_kind == NoRoomError.__name__:
+        return Recorded(job, (), frozenset())
+    if not isinstance(row, DriveTrialRow) or row.error is not None:
+        why = "it has not ended" if row is None else row.error
+        raise UserError(f"{job.id}, which drove in the same traffic, has no trace: {why}")
+    stored = [line for line in read_trace(folder, job.id) if "step" in line]
+    return Recorded(job, stored, frozenset(row.channels), row.agent_error)
 
 
 def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
@@ -130,8 +176,10 @@ def _single(folder: Path, trial: str) -> Recorded:
         raise UserError(f"{folder} holds a single run; omit {trial!r}")
     told, stored = read_trial(folder), read_steps(folder)
     job, row = _job(folder, told), (told.get("result") or {}) | (told.get("row") or {})
+    if isinstance(job, DriveSetup) and job.settings.cars:
+        raise UserError(f"{job.id} drove among others; give the folder of their evaluation, and this id")
     channels = frozenset(map(Channel, row["channels"])) if "channels" in row else _channels(job)
-    return job, stored, channels, row.get("agent_error")
+    return Recorded(job, stored, channels, row.get("agent_error"))
 
 
 def _job(folder: Path, told: Json) -> TrialSetup:
@@ -163,35 +211,43 @@ def _channels(setup: TrialSetup) -> frozenset[Channel]:
 
 
 def played(
-    job: TrialSetup,
-    stored: Sequence[Json],
-    channels: frozenset[Channel],
-    failure: str | None = None,
+    stored: Recorded,
     *,
     simulations: Simulations | None = None,
     observers: Sequence[TrialObserver] = (),
     player: Player | None = None,
 ) -> tuple[TrialRow, Recorder]:
-    """Plays the actions of a stored trial in the same setup; its row, and what an evaluation would keep of it.
+    """Plays the actions of a stored trial in the same setup, beside those of the other cars of its fleet; its row,
+    and what an evaluation would keep of it.
 
     Args:
-        stored: the steps of its trace.
-        channels: those of its agent, on which the answers to queries depend.
-        failure: how the agent's side failed after them, if it did.
+        stored: the trial.
         simulations: warm simulations to use; by default its own.
         observers: notified of everything as it happens.
-        player: used instead of a player of these steps.
+        player: used instead of a player of its steps.
 
     Raises:
         UserError: something in the setup does not exist.
         InfrastructureError: the simulation failed.
     """
-    recorder = Recorder(job, None)
-    player = player or Player(stored[1:], channels, failure)
-    row = run_trial(job, player, (recorder, *observers), simulations=simulations)
+    recorder = Recorder(stored.job, None)
+    run = TrialRun(stored.job, player or stored.player, (recorder, *observers))
+    if isinstance(stored.job, DriveSetup) and stored.job.settings.cars:
+        others = [TrialRun(each.job, each.player) for each in stored.beside]
+        row = played_together([run, *others], simulations)[stored.job.car]
+    else:
+        row = run_trial(run.trial, run.agent, (recorder, *observers), simulations=simulations)
     if row.error is not None:
         raise InfrastructureError(row.error)
     return row, recorder
+
+
+def played_together(runs: Iterable[TrialRun], simulations: Simulations | None = None) -> Sequence[TrialRow]:
+    """Plays the drives of all cars of a fleet; their rows, by the numbers of the cars."""
+    cars = {trial.car: (trial, run) for run in runs if isinstance(trial := run.trial, DriveSetup)}
+    drives, by_car = zip(*(cars[number] for number in sorted(cars)), strict=True)
+    with ExitStack() as ends:
+        return run_fleet(drives, by_car, simulations or ends.enter_context(closing(Simulations())))
 
 
 def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:

@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 from automotive_cosim.contracts import (
     Around,
     DrivingState,
+    Limit,
     OtherVehicle,
     RoadAhead,
     RoadHere,
@@ -63,21 +64,37 @@ def unpack_state(packed: Packed) -> DrivingState:
     """The state that was packed."""
     row, ahead, around = list(packed), list(packed[_AHEAD_AT]), packed[_AROUND_AT]
     light = ahead[_LIGHT_AT]
-    ahead[_LIGHT_AT] = light and make_light(*light)
+    ahead[_LIGHT_AT] = light and make_light(*_interned(light))
     ahead[_ROUTE_AT], ahead[_SLOW_AT] = _same(ahead[_ROUTE_AT]), _same(ahead[_SLOW_AT])
-    road: Packed = tuple(intern(each) if type(each) is str else each for each in row[_ROAD_AT])
-    row[_ROAD_AT] = make_road(*road)
+    row[_ROAD_AT] = make_road(*_interned(row[_ROAD_AT]))
     row[_AHEAD_AT] = make_ahead(*ahead)
-    others: Packed = tuple(other and make_other(*other) for other in around[:_OTHERS])
+    others: Packed = tuple(other and make_other(*_interned(other)) for other in around[:_OTHERS])
     row[_AROUND_AT] = make_around(*others, *around[_OTHERS:])
     return make_state(*row)
+
+
+def _interned(packed: Packed) -> Packed:
+    """With names and limits that are the same ones as before."""
+    return tuple(
+        intern(each) if type(each) is str else _limit(each) if type(each) is Limit else each for each in packed
+    )
+
+
+@lru_cache(maxsize=512)
+def _limit(limit: Limit) -> Limit:
+    return limit
 
 
 @lru_cache(maxsize=512)
 def _same(edges: Packed) -> Packed:
     """The same route or traffic news as before, if they are: of what a drive keeps, copies of them were a third.
     The names in all of them are the same, too."""
-    return tuple(intern(each) if isinstance(each, str) else (intern(each[0]), *each[1:]) for each in edges)
+    return tuple(intern(each) if isinstance(each, str) else _pair(*each) for each in edges)
+
+
+@lru_cache(maxsize=4096)
+def _pair(edge: str, relative_speed: float) -> Packed:
+    return intern(edge), relative_speed
 
 
 def pack_advance(advance: Advance) -> Packed:

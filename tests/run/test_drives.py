@@ -42,7 +42,7 @@ from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.regrade import regrade
-from automotive_cosim.run.rerun import compare, played, rerun
+from automotive_cosim.run.rerun import Recorded, compare, played, rerun
 from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.row import as_json, from_json, steady
@@ -268,7 +268,7 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
     *steps, _ = read_trace(folder, row.id)
     job = DriveSetup(row.family, row.seed, settings=row.settings, agent=row.agent, model=row.model)
     quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
-    different = compare(steps, played(job, quiet, frozenset(row.channels))[1].lines[:-1])
+    different = compare(steps, played(Recorded(job, quiet, frozenset(row.channels)))[1].lines[:-1])
     assert "action" in next(step for step in different if step.differs).differs
     with pytest.raises(UserError, match="no drive in"):
         rerun(folder, "grid_december")
@@ -300,7 +300,7 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
         first = run_trial(setup, agent, (recorder, road_recorder), simulations=simulations)
         assert isinstance(first, DriveTrialRow)
         *steps, last = recorder.lines
-        again, kept = played(setup, steps, frozenset(first.channels), simulations=simulations)
+        again, kept = played(Recorded(setup, steps, frozenset(first.channels)), simulations=simulations)
     assert len({step["thought_s"] for step in steps}) > 2
     assert not [step for step in compare(steps, kept.lines[:-1]) if step.differs]
     assert isinstance(again, DriveTrialRow)

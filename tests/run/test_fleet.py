@@ -1,6 +1,8 @@
 """Drives of several cars in one traffic: each has a row, and what fails in one is that car's."""
 
+import gzip
 import json
+import shutil
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -16,8 +18,12 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import AgentError, ModelError, UserError
+from automotive_cosim.formats.layout import PICTURES
+from automotive_cosim.publish.verify import verify
+from automotive_cosim.report.drives import shown_car
 from automotive_cosim.report.evaluation import write_report
 from automotive_cosim.report.results import load_results, read_results
+from automotive_cosim.run.attribution import attribute
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow, FleetRow
@@ -26,9 +32,10 @@ from automotive_cosim.run.fleet_record import read_fleet
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
+from automotive_cosim.run.rerun import rerun
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.store import read_rows, read_trace
+from automotive_cosim.run.store import read_rows, read_trace, write_trace
 from automotive_cosim.run.trial import TrialRun, run_trial
 from automotive_cosim.run.worker import run_job
 from automotive_cosim.serve.content import Content
@@ -102,7 +109,7 @@ def driven(simulations: Simulations, tmp_path_factory: pytest.TempPathFactory) -
     with closing(ForkServer()) as fork_server:
         here = Here(simulations, fork_server)
         here.answer = lambda: run_job(here.job, here.folder, Pictures.ALL, simulations, fork_server)  # type: ignore[method-assign]
-        plan = make_plan({"agents": ["rule-perfect", "asurada"], "drives": ["grid_june"], "seeds": [2],
+        plan = make_plan({"agents": ["alert-often", "asurada"], "drives": ["grid_june"], "seeds": [2],
                           "settings": {"minutes": 0.4, "cars": 3}})  # fmt: skip
         end = run_plan(plan, folder, executor=here)
     assert (end.planned, end.done, end.errors) == (2, 2, 0)
@@ -115,7 +122,7 @@ def test_rows_are_of_cars_and_a_lost_one_is_made_again(
     results = read_results(driven)
     assert str(results.coverage).startswith("6 of 6 planned drives judged")
     assert sorted((row.agent, row.car, row.seed) for row in results.drives) == [
-        (agent, car, 2 + car) for agent in ("asurada", "rule-perfect") for car in range(3)
+        (agent, car, 2 + car) for agent in ("alert-often", "asurada") for car in range(3)
     ]
     assert not any(row.agent_error for row in results.drives)
     assert load_results(driven).index.nunique() == 6
@@ -171,6 +178,53 @@ def test_report_and_pages_have_a_map_whose_cars_open(driven: Path) -> None:
         content.study(entry.id, "cars", "another")
 
 
+def second_car(folder: Path) -> str:
+    """The id of a car that acts, and is not the first."""
+    return next(
+        row.id for row in read_rows(folder, DriveTrialRow).values() if (row.agent, row.car) == ("alert-often", 1)
+    )
+
+
+def test_a_car_is_replayed_with_its_fleet_and_recorded_anew(driven: Path, tmp_path: Path) -> None:
+    name = next(
+        row.id for row in read_rows(driven, DriveTrialRow).values() if row.agent == "alert-often" and row.car
+    )
+    again = tmp_path / "again"
+    replayed = CliRunner().invoke(app, ["replay", str(driven), name, "--out", str(again)])
+    assert replayed.exit_code == 0, replayed.output
+    assert "steps are the same" in replayed.output
+    before = driven / PICTURES / name
+    for file in ("road.jsonl.gz", "steps.jsonl.gz"):
+        assert gzip.decompress((again / file).read_bytes()) == gzip.decompress((before / file).read_bytes())
+    pictures = sorted(path.relative_to(before) for path in before.glob("**/*.jpg"))
+    assert pictures
+    assert all((again / picture).read_bytes() == (before / picture).read_bytes() for picture in pictures)
+    with pytest.raises(UserError, match="among others; give the folder of their evaluation"):
+        rerun(again)
+
+
+def test_verify_drives_a_fleet_again_and_names_the_car_that_differs(driven: Path, tmp_path: Path) -> None:
+    found = verify(driven, replays=2, seed=1)
+    assert not found.problems
+    assert "6 drives replayed, drawn with seed 1" in found.facts
+    folder = Path(shutil.copytree(driven, tmp_path / "forged"))
+    name = next(
+        row.id for row in read_rows(folder, DriveTrialRow).values() if row.agent == "alert-often" and row.car
+    )
+    *steps, last = read_trace(folder, name)
+    steps[-1] = steps[-1] | {"sha256": steps[-1]["sha256"] | {"signals": 64 * "0"}}
+    write_trace(folder, name, [*steps, last])
+    (problem,) = verify(folder, replays=2, seed=1).problems
+    assert name in problem.file
+    assert problem.field == f"step {len(steps) - 1} signals"
+
+
+def test_the_acts_of_a_car_are_left_out_all_else_equal(driven: Path, simulations: Simulations) -> None:
+    row = max(read_rows(driven, DriveTrialRow).values(), key=lambda row: (len(row.acts), row.car))
+    effects = attribute(driven, row.id, simulations=simulations)
+    assert sum(len(each.steps) == 1 for each in effects) == len({act.time_s for act in row.acts}) > 0
+
+
 @pytest.mark.slow
 def test_the_command_runs_a_fleet_and_tells_of_each_car(sumo: None, tmp_path: Path) -> None:
     words = ["run", "--drive", "grid_june", "--agent", "silent", "--seed", "2", "--minutes", "0.4", "--cars", "2"]
@@ -188,3 +242,9 @@ def test_a_car_of_a_fleet_does_not_drive_alone(simulations: Simulations) -> None
     with pytest.raises(UserError, match="cannot drive alone"):
         DriveSpec("grid_june", settings=DriveSettings(cars=2)).begin(simulations)
     assert as_json(fleet_of(None).planned())["car"] == 0
+
+
+def test_a_cars_page_says_where_its_agent_gave_no_action() -> None:
+    row = replace(fleet_of(2).planned(), end=End.MINUTES_OVER, malformed=1, malformed_why="it raised")
+    assert shown_car("ego", row).words == "minutes over; no action in 1 step, at first: it raised"
+    assert shown_car("ego", replace(row, malformed=0)).words == "minutes over"

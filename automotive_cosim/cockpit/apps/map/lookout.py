@@ -6,6 +6,7 @@ It states measurements and messages, whether or not anything follows from them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 
 from automotive_cosim.cockpit.apps.cabin import KINDS, SEATS
 from automotive_cosim.cockpit.flow import fill, framed, grid, line
@@ -95,6 +96,12 @@ def sights(state: State) -> tuple[Sight, ...]:
     return (*_aboard(state), *sorted(around, key=lambda sight: sight.distance_m or 0.0))[:LINES]
 
 
+@cache
+def _unbuckled(seat: Seat) -> Sight:
+    """The same one from second to second, as drives keep them."""
+    return Sight(SightKind.PASSENGER_BELT, say("Seat belt unbuckled: {seat}", seat=SEATS[seat]))
+
+
 def _aboard(state: State) -> Iterator[Sight]:
     signals = state.signals
     if not signals[SEAT.DRIVER_BELT] and signals[MOTION.GEAR] != "P":
@@ -104,7 +111,7 @@ def _aboard(state: State) -> Iterator[Sight]:
     )
     unbelted = [one for one in others if not one.belted]
     if unbelted and signals[MOTION.GEAR] != "P":
-        yield Sight(SightKind.PASSENGER_BELT, say("Seat belt unbuckled: {seat}", seat=SEATS[unbelted[0].seat]))
+        yield _unbuckled(unbelted[0].seat)
     if state.parked_s is not None and not signals[OCCUPANT.DRIVER.occupied]:
         left = (
             say("Driver has left, aboard: {who}", who=WHO[others[0].kind])
