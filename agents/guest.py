@@ -11,6 +11,7 @@ import ast
 import importlib
 import inspect
 import sys
+import traceback
 from collections.abc import Callable
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -136,7 +137,7 @@ def own_class(spec: str, what: str) -> type:
     except AttributeError:
         classes = sorted(name for name, value in vars(module).items() if inspect.isclass(value))
         raise UserError(
-            f"{what} {spec!r}: {module_name} has no {class_name}; it has {', '.join(classes)}"
+            f"{what} {spec!r}: {module_name} has no {class_name}; it has {', '.join(classes) or 'no class'}"
         ) from None
     if not inspect.isclass(made):
         raise UserError(f"{what} {spec!r} is {type(made).__name__}; {FORM} has to name a class")
@@ -168,8 +169,12 @@ def _made(spec: str, made: type) -> Any:
 
 
 def told(error: BaseException) -> str:
-    """What a guest's code raised, in a line."""
-    return _plain(f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
+    """What a guest's code raised, in a line, with the last place in its own file on the way there."""
+    said = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+    _, *beyond = traceback.extract_tb(error.__traceback__)  # the first is this program's call of it
+    theirs = [each for each in beyond if "importlib" not in each.filename]
+    own = [each for each in theirs if each.filename == theirs[0].filename]
+    return _plain(said + (f" ({Path(own[-1].filename).name} line {own[-1].lineno})" if own else ""))
 
 
 def _plain(text: str) -> str:

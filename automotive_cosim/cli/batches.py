@@ -206,7 +206,7 @@ def whole_numbers_in(name: str, text: str) -> list[int]:
     for word in words(name, text):
         first, dash, last = word.partition("-")
         if not first.isdigit() or (dash and not (last.isdigit() and int(first) <= int(last) < int(first) + 10**6)):
-            raise UserError(f"--{name} has {word!r}; give numbers and ranges, as in 0-4 or 0,3,7")
+            raise UserError(f"--{name} has {word!r}; give numbers and rising ranges, as in 0-4 or 0,3,7")
         found += range(int(first), int(last or first) + 1)
     return found
 

@@ -52,7 +52,13 @@ def _told(settings: Mapping[str, Any]) -> list[tuple[Condition, str]]:
 def _value(each: Condition, word: str) -> Any:
     if each.name in FROM_FILES:
         return FROM_FILES[each.name](word)
-    return word if each.choices else number_in(float, [Ge(each.bounds[0]), Le(each.bounds[1])], word)
+    if each.choices:
+        return word
+    try:
+        return number_in(float, [Ge(each.bounds[0]), Le(each.bounds[1])], word)
+    except typer.BadParameter as error:  # typer, which would name the option, has gone on to run the command
+        error.param_hint = f"'--{each.word}'"
+        raise
 
 
 def _parameter(each: Condition, *, lists: bool) -> inspect.Parameter:

@@ -195,18 +195,24 @@ def main() -> None:
     sys.exit(code)
 
 
+def _misused(error: typer.TyperException) -> str:
+    """What is wrong with a command's words, and where to read what is right; empty once its help is printed."""
+    said, context = error.format_message(), getattr(error, "ctx", None)
+    if not said or said.endswith("?") or context is None:  # with a question mark it offers the right word itself
+        return said
+    return f"{said.removesuffix('.')}; see `{context.command_path} --help`"
+
+
 def _run() -> int:
     """Runs a command; returns the exit code."""
     try:
         asked = [word for word in sys.argv[1:] if not word.startswith("-")]
-        return made(*asked[:2] or (LIST,))(standalone_mode=False) or 0
+        return made(*asked[:2] or (LIST,))(prog_name="automotive-cosim", standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise
-        problems = [error.format_message()] if isinstance(error, typer.TyperException) else error.args
-        for problem in filter(
-            None, map(str, problems)
-        ):  # without any, the help for a missing command has been printed
+        problems = [_misused(error)] if isinstance(error, typer.TyperException) else error.args
+        for problem in filter(None, map(str, problems)):
             print("error: " + " ".join(problem.split()), file=sys.stderr)
         return 3 if isinstance(error, InfrastructureError) else 2
     except SystemExit as end:  # typer's own, with a code of 1

@@ -120,9 +120,6 @@ def _applied(rule: Rule, jurisdiction: str, facts: RuleFacts) -> AppliedRule:
     return AppliedRule(rule, jurisdiction, *rule.answer(facts))
 
 
-AllSaid: TypeAlias = tuple[tuple[AppliedRule, ...], tuple[AppliedRule, ...], tuple[AppliedRule, ...]]
-
-
 class _Said:
     """What the rules of some layers say, by the answers of their conditions: these are much the same from second to
     second, and a drive asks every second."""

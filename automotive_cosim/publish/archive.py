@@ -67,8 +67,9 @@ def unpack(bundle: Path, folder: Path) -> None:
         with open_file(bundle) as file, zipfile.ZipFile(file) as archive:
             _unpack(bundle, archive, folder)
     except (zipfile.BadZipFile, NotImplementedError, OSError, EOFError, ValueError, RuntimeError) as error:
+        fault = getattr(error, "strerror", None) or error  # without the number, and the path a second time
         raise UserError(
-            f"{bundle} is not a bundle: {error}; `automotive-cosim publish bundle` makes one"
+            f"{bundle} is not a bundle: {fault}; `automotive-cosim publish bundle` makes one"
         ) from error
 
 

@@ -199,9 +199,8 @@ def read_manifest(folder: Path) -> Json:
     try:
         manifest: Json = files.read_json(path)
     except FileNotFoundError as error:
-        raise UserError(
-            f"{folder} is not an evaluation: it has no manifest.json; `automotive-cosim eval` creates one"
-        ) from error
+        lacks = "it has no manifest.json" if folder.is_dir() else "there is no such folder"
+        raise UserError(f"{folder} is not an evaluation: {lacks}; `automotive-cosim eval` creates one") from error
     except (OSError, ValueError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
     found = manifest.get("format") if isinstance(manifest, dict) else None

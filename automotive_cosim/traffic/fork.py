@@ -577,7 +577,7 @@ class Simulations:
         self._memory_limit_bytes = memory_limit_bytes
         self._kept: OrderedDict[Setup, Forked] = OrderedDict()
         self._held: list[Forked] = []
-        """Number of threads about to depart from each."""
+        """One entry for each thread that is about to depart from it: these are not closed."""
         self._lock = threading.Lock()
 
     def warm(

@@ -12,6 +12,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.incident_tools import CAR_TYPE, IncidentTools
 from automotive_cosim.traffic.network import Edge
+from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident
 from automotive_cosim.traffic.sumo import ANY_LANE_CHANGE, HAZARD_SIGNAL, WAYMAKING
 
@@ -63,19 +64,26 @@ class StagedEmergency(StagedIncident):
 
     def tick(self, local_time: datetime) -> str:
         """Waits until the ego has come far enough; then lets drivers be who they were once it has passed them."""
-        tools, sensor = self._tools, self._tools.sensor
-        if self._car:
-            if self._incident.blue_light:
-                self._give_back()
-            return ""
-        if sensor is None or sensor.position_m < self._incident.behind_m:
-            return ""
+        sensor = self._tools.sensor
+        if not self._car:
+            if sensor is not None and sensor.position_m >= self._incident.behind_m:
+                self._appear(sensor)
+        elif self._incident.blue_light:
+            self._give_back()
+        return ""
+
+    def _appear(self, sensor: Sensor) -> None:
+        tools = self._tools
         index, on_edge_m = sensor.route.edge_at(sensor.position_m - self._incident.behind_m)
         what = "ambulance" if self._incident.blue_light else "van"
-        kind = tools.kind(what)
-        types = tools.sumo.type
+        kind = self._shaped(what)
         if not sensor.knows_emergency:
             tools.drivers.clear()
+        self._car = tools.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
+
+    def _shaped(self, what: str) -> str:
+        """The vehicle type of that name, as SUMO is to know it."""
+        kind, types = self._tools.kind(what), self._tools.sumo.type
         if self._incident.blue_light:
             types.setVehicleClass(kind, "emergency")
             types.setShapeClass(kind, "emergency")
@@ -86,8 +94,7 @@ class StagedEmergency(StagedIncident):
         types.setSpeedFactor(kind, self._incident.speed_ratio)
         types.setSpeedDeviation(kind, 0.0)
         types.setParameter(kind, "has.rerouting.device", "false")
-        self._car = tools.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
-        return ""
+        return kind
 
     def _give_back(self) -> None:
         sumo, drivers = self._tools.sumo, self._tools.drivers
@@ -262,16 +269,11 @@ class StagedCutIn(StagedIncident):
         self._kept: _KeptInLane | None = None
 
     def tick(self, local_time: datetime) -> str:
-        tools, incident = self._tools, self._incident
         if self._left_s is not None:
-            if self._left_s > 1.0:
-                self._left_s -= 1.0
-            elif self._left_s > 0:
-                self._release()
-            if self._kept is not None:
-                self._kept.tick()
+            self._hold(self._left_s)
             return ""
-        mps, slower_mps = tools.sumo.speed(tools.ego_id), incident.slower_kmh / KMH_PER_MPS
+        tools, incident = self._tools, self._incident
+        mps = tools.sumo.speed(tools.ego_id)
         found = _beside(tools, incident.gap_m + CUT_ROOM_M)
         if found is None or mps < incident.from_kmh / KMH_PER_MPS:
             return ""
@@ -287,12 +289,25 @@ class StagedCutIn(StagedIncident):
             with suppress(*tools.sumo.refusals):
                 tools.sumo.vehicle.setSpeed(self._car, max(CREEP_MPS, mps + (incident.gap_m - gap_m) * NEARS_PER_S))
             return ""
-        with suppress(*tools.sumo.refusals):  # the lane may have ended by then
-            tools.sumo.vehicle.setSpeed(self._car, max(mps - slower_mps, CREEP_MPS))
-            _move_over(tools, self._car, found.lane, incident.hold_s)
-        self._left_s = incident.hold_s
-        self._kept = _KeptInLane(tools, SWERVES_AFTER_S)
+        self._cut_in(found.lane, mps - incident.slower_kmh / KMH_PER_MPS)
         return "a vehicle cuts in ahead"
+
+    def _cut_in(self, lane: str, to_mps: float) -> None:
+        tools, hold_s = self._tools, self._incident.hold_s
+        with suppress(*tools.sumo.refusals):  # the lane may have ended by then
+            tools.sumo.vehicle.setSpeed(self._car, max(to_mps, CREEP_MPS))
+            _move_over(tools, self._car, lane, hold_s)
+        self._left_s = hold_s
+        self._kept = _KeptInLane(tools, SWERVES_AFTER_S)
+
+    def _hold(self, left_s: float) -> None:
+        """A second has passed since it cut in."""
+        if left_s > 1.0:
+            self._left_s = left_s - 1.0
+        elif left_s > 0:
+            self._release()
+        if self._kept is not None:
+            self._kept.tick()
 
     def end(self) -> str:
         if self._car and (self._left_s is None or self._left_s > 0):

@@ -110,6 +110,19 @@ def test_a_name_that_leads_nowhere_is_told(name):
         make_agent(name)
 
 
+def test_what_a_module_raises_is_told_with_its_line(module):
+    name = module("import json\n\njson.loads('{')\n")
+    with pytest.raises(UserError, match=rf"raised JSONDecodeError: .+ \({name}\.py line 3\)$"):
+        make_agent(f"{name}:Mine")
+    with pytest.raises(UserError, match=r"raised SyntaxError: .+ \(\w+\.py, line 1\)$"):
+        make_agent(f"{module('def x:')}:Mine")
+
+
+def test_a_module_without_classes_is_told(module):
+    with pytest.raises(UserError, match="has no Mine; it has no class$"):
+        make_agent(f"{module('')}:Mine")
+
+
 @pytest.mark.parametrize(
     ("body", "said"),
     [
@@ -128,6 +141,20 @@ def test_what_goes_wrong_in_a_step_is_the_steps_fault(module, observation, body,
     agent = make_agent(f"{module(text)}:Mine")
     with pytest.raises(ActionError, match=said):
         agent.act(observation("x"))
+
+
+@pytest.mark.parametrize(
+    ("body", "place"),
+    [("return helped()", r"line 2\)"), ("return json.loads('{')", r"line 5\)"), ("return self.act()", r"line 5\)")],
+)
+def test_what_an_agent_raised_is_told_with_the_line_of_its_own_file(module, observation, body, place):
+    text = (
+        "import json\ndef helped(): return 1 / 0\nclass Mine:\n    def reset(self, goal): ...\n"
+        f"    def act(self, observation): {body}\n"
+    )
+    name = module(text)
+    with pytest.raises(ActionError, match=rf"raised \w+: .+ \({name}\.py {place}$"):
+        make_agent(f"{name}:Mine").act(observation("x"))
 
 
 # --- AndroidWorld's agents --------------------------------------------------------------------------------------

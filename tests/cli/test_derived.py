@@ -145,8 +145,9 @@ def test_help_is_the_docstring_with_the_default() -> None:
 def test_lists_of_numbers_refuse_anything_else() -> None:
     with pytest.raises(UserError, match="--shares has 'half'; give numbers separated by commas"):
         told("--shares", "0.5,half")
-    with pytest.raises(UserError, match="--seeds has 'x'; give numbers and ranges"):
-        told("--seeds", "x")
+    for wrong in ("x", "5-1"):
+        with pytest.raises(UserError, match=f"--seeds has '{wrong}'; give numbers and rising ranges"):
+            told("--seeds", wrong)
 
 
 def test_a_zero_that_was_given_is_kept() -> None:

@@ -186,6 +186,7 @@ def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
     if plan is not None:
         with opened(tmp_path / "f", plan, JobRow, parts=()):
             pass
+    assert (plan is not None) or "there is no such folder" in cli("report", "f").err
     for command in (("report", "f"), ("replay", "f", "x"), ("publish", "regrade", "f"), ("compare", "f", "f")):
         ran = cli(*command)
         assert (ran.code, ran.err.count("\n")) == (2, 1)

@@ -87,6 +87,23 @@ def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
     assert len(ran.err.splitlines()) == 1
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("tasks", "show"), "Missing argument 'task'; see `automotive-cosim tasks show --help`"),
+        (("publish", "pack"), "No such command 'pack'; see `automotive-cosim publish --help`"),
+        (("runn",), "No such command 'runn'. Did you mean 'run'?"),
+        (
+            ("run", "--latency", "-1"),
+            "Invalid value for '--latency': '-1' is not a number from 0 to 600; see `automotive-cosim run --help`",
+        ),
+    ],
+)
+def test_wrong_words_are_named_with_where_to_read_the_right_ones(cli, words, said):
+    ran = cli(*words)
+    assert (ran.code, ran.out, ran.err) == (2, "", f"error: {said}\n")
+
+
 OTHERS = {
     ("a2a",), ("mcp",), ("serve",), ("measures",), ("report",), ("show", "screens"), ("show", "schema"),
     ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
