@@ -119,7 +119,7 @@ def test_what_a_module_raises_is_told_with_its_line(module):
 
 
 def test_a_module_without_classes_is_told(module):
-    with pytest.raises(UserError, match="has no Mine; it has no class$"):
+    with pytest.raises(UserError, match=r"has no Mine; it has no class$"):
         make_agent(f"{module('')}:Mine")
 
 

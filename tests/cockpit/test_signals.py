@@ -128,7 +128,7 @@ def test_snapshot_is_json_and_a_difference_lists_what_changed() -> None:
 
 
 @pytest.mark.parametrize("distraction", [None, 0.0, 40.0])
-def test_a_snapshot_is_the_dict_of_all_values_in_a_sixth_of_the_room(distraction: float | None) -> None:
+def test_a_snapshot_is_the_dict_of_all_values_in_a_twentieth_of_the_room(distraction: float | None) -> None:
     signals = Signals({DRIVER.DISTRACTION.path: distraction, DRIVER.FATIGUE.path: distraction})
     held = {path: signal.default for path, signal in CATALOGUE.items()}
     held |= dict.fromkeys(OF_ATTENTION, distraction) if distraction is not None else {}
@@ -142,12 +142,24 @@ def test_a_snapshot_is_the_dict_of_all_values_in_a_sixth_of_the_room(distraction
     then = signals.snapshot()
     assert then != first
     assert difference(first, then) == {MOTION.SPEED.path: (0.0, 50.0)}
-    assert then._commanded is first._commanded
-    room = sum(map(sys.getsizeof, (then, then._others)))
-    assert 6 * room < sys.getsizeof(then.as_dict())
+    parts = {id(part) for part in first._parts}
+    new = [part for part in then._parts if id(part) not in parts]
+    assert len(new) == 1
+    room = sum(map(sys.getsizeof, (then, then._parts, *new)))
+    assert 20 * room < sys.getsizeof(then.as_dict())
     signals[HVAC.FAN_SPEED] = 80.0
     assert first[HVAC.FAN_SPEED.path] == 30.0
     assert signals.snapshot()[HVAC.FAN_SPEED.path] == 80.0
+
+
+def test_what_is_written_alike_is_kept_once_and_minus_zero_is_not() -> None:
+    signals = Signals({MOTION.SPEED.path: 40.5})
+    before = signals[MOTION.SPEED]
+    signals[MOTION.SPEED] = float("40.5")
+    assert signals[MOTION.SPEED] is before
+    for value in (0.0, -0.0):
+        signals[MOTION.SPEED] = value
+        assert str(signals[MOTION.SPEED]) == str(value)
 
 
 def test_copies_are_independent() -> None:

@@ -129,7 +129,7 @@ def test_what_does_not_belong_in_a_bundle_is_refused(packed, tmp_path, member):
 
 def test_damaged_and_compressed_archives_are_refused_or_found(packed, tmp_path):
     path = tmp_path / "b.bundle"
-    with pytest.raises(UserError, match="b.bundle is not a bundle: No such file or directory; "):
+    with pytest.raises(UserError, match=r"b\.bundle is not a bundle: No such file or directory; "):
         verify(path)
     for data in (b"", b"nothing", packed.read_bytes()[:5000]):
         path.write_bytes(data)
