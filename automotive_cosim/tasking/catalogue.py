@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.compiled import compiled
 from automotive_cosim.formats.xml import without_collection
 from automotive_cosim.tasking.instance import drawn, instances
 from automotive_cosim.tasking.own_files import VARIABLE, line_of, own_files, shipped_files, shipped_tasks, tasks_of
@@ -46,7 +47,8 @@ class Catalogue(Mapping[str, Task]):
     def _of(self, path: Path) -> dict[str, Task]:
         """The tasks of a shipped file, read once."""
         if path not in self._read:
-            self._read[path] = {task.id: task for task in shipped_tasks(path)}
+            shared = path.parents[1] / "common.toml"
+            self._read[path] = compiled((path, shared), lambda: {task.id: task for task in shipped_tasks(path)})
         return self._read[path]
 
     def _alone(self, task_id: str) -> Task | None:

@@ -143,7 +143,7 @@ def _chatter(**named: object) -> object:
 
 def test_json_stands_alone_whatever_else_prints(cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """``main`` runs all commands alike."""
-    monkeypatch.setattr("automotive_cosim.cli.main.made", lambda asked: _chatter)
+    monkeypatch.setattr("automotive_cosim.cli.main.made", lambda *asked: _chatter)
     asked = cli("agents", "list", "--json")
     assert json.loads(asked.out)["agents"]
     assert asked.err.count("CHATTER") == 3
