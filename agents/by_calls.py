@@ -74,8 +74,8 @@ def translated(walk: Episode) -> tuple[TimedCall, ...]:
     try:
         while walk.end is None:
             at_s, heard = walk.observation.time_s, len(walk.heard)
-            action = oracle.act(replace(walk.observation, elements=walk.elements))
-            before, listed = walk.world.cockpit.copy(), walk.elements
+            before, listed = walk.world.cockpit.copy(), tuple(walk.elements)
+            action = oracle.act(replace(walk.observation, elements=listed))
             walk.step(action)
             if action.action_type not in BY_HAND:
                 calls.append(TimedCall(action_of(*call_of(action)), heard, at_s))

@@ -441,7 +441,7 @@ def position(text: str) -> tuple[float, float] | None:
         return None
 
 
-def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> Feedback:
+def perform(action: Action, cockpit: Cockpit, elements: Sequence[Element]) -> Feedback:
     """Performs an action on the cockpit.
 
     Args:

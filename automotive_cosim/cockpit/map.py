@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from shapely import Geometry, LineString, Polygon, STRtree, box, points
+from shapely import Geometry, LineString, Point, Polygon, STRtree, box
 
 from automotive_cosim.cockpit.drawing import text_width
 from automotive_cosim.cockpit.geometry import Rect
@@ -82,7 +82,7 @@ class RoadMap:
         self._named = [self.roads[at].name for at in named]
         """Names of roads, as often as there are such: of major roads first, then of long ones."""
         self._middles = np.array([_middle(shapes[at]) for at in named]).reshape(-1, 2)
-        self._named_tree = STRtree(points(self._middles))
+        self._named_tree = STRtree([Point(*at) for at in self._middles])
         in_tunnel = np.array([road.in_tunnel for road in self.roads], dtype=bool)
         self._depths = np.where(in_tunnel, -1, self._ranks)
         self._index = {road.edge_id: i for i, road in enumerate(self.roads)}

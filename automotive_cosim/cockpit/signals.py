@@ -576,9 +576,10 @@ class Signals:
     @property
     def actuators(self) -> tuple[Any, ...]:
         """The value of every actuator, in the order of ``ACTUATORS``: the same object until one is set."""
-        if self._commanded is None:
-            self._commanded = _actuators(self._values)
-        return self._commanded
+        known = self._commanded
+        if known is None:
+            known = self._commanded = _actuators(self._values)
+        return known
 
     def picked(self, read: Callable[[Mapping[str, Any]], tuple[Any, ...]]) -> tuple[Any, ...]:
         """What a getter takes of all paths and values, without a copy of them."""
@@ -608,7 +609,8 @@ _PLACES = {path: place for place, path in enumerate(ACTUATORS)} | {path: ~n for 
 
 def picker(paths: Sequence[str]) -> Callable[[Mapping[str, Any]], tuple[Any, ...]]:
     """A function that takes the values of several paths at once from a snapshot, or from any paths and values."""
-    named, placed = itemgetter(*paths), itemgetter(*map((*ACTUATORS, *OTHERS).index, paths))
+    named: Callable[[Mapping[str, Any]], tuple[Any, ...]] = itemgetter(*paths)
+    placed: Callable[[tuple[Any, ...]], tuple[Any, ...]] = itemgetter(*map((*ACTUATORS, *OTHERS).index, paths))
 
     def pick(values: Mapping[str, Any]) -> tuple[Any, ...]:
         return placed(values._commanded + values._others) if isinstance(values, Snapshot) else named(values)

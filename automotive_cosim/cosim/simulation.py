@@ -6,7 +6,7 @@ advance:  road -> receiver and sky -> cockpit -> place and law, once every simul
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 
@@ -53,7 +53,7 @@ class CoSimulation:
         """The car's cockpit."""
         return self.car.cockpit
 
-    def perform(self, action: Action, elements: tuple[Element, ...]) -> Feedback:
+    def perform(self, action: Action, elements: Sequence[Element]) -> Feedback:
         """Performs an action now and passes on its requests to the road; no time passes."""
         feedback = actions.perform(action, self.cockpit, elements)
         for request in self.cockpit.drain_requests():

@@ -356,7 +356,8 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
     The reward of a step is what it changed in the utility of the drive (``drives.score``), as a share of what the
     events of a usual drive are worth together: twice an event's weight once it is met, minus the cost of each
     nuisance. What an alert earns comes with the step in which the event turns out to be due; until then it may be
-    taken back. ``info`` is empty but for ``score`` and ``trace_sha256`` at the end, where ``score`` is the judge's.
+    taken back. ``info`` is empty but for ``score`` at the end, the judge's. ``env.unwrapped.episode.trace_sha256``
+    lays out the screens of the whole drive, which nobody has looked at.
     """
 
     def __init__(
@@ -375,8 +376,8 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
             families: ids of families, or one; ``automotive-cosim show drives`` lists them.
             scenario: where to drive instead of on the families' own roads.
             minutes: when a drive is over, if its script ends later.
-            lean: for training at several times the speed: SUMO in steps of a second, no screen is laid out, and
-                ``info`` holds no ``trace_sha256``. The traffic is not that of the same seed in steps of 0.1 s.
+            lean: for training at several times the speed: SUMO in steps of a second, and screens are not in
+                the trace. The traffic is not that of the same seed in steps of 0.1 s.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
 
@@ -419,5 +420,5 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
         before, self._utility = self._utility, found.utility / (2 * LEAST_WORTH)
         info: dict[str, Any] = {}
         if session.end is not None:
-            info = {"score": found.value} | ({} if self._lean else {"trace_sha256": session.trace_sha256})
+            info = {"score": found.value}
         return self._numbers.read(session.observation), self._utility - before, *ended(session), info

@@ -9,15 +9,17 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import takewhile
 from math import inf
-from typing import Any, Protocol, Self, TypeAlias, TypeVar
+from typing import Any, Protocol, Self, TypeAlias, TypeVar, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.cockpit.actions import check
 from automotive_cosim.cockpit.calls import functions
+from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.occupants import Seat
 from automotive_cosim.cockpit.tree import make_named
 from automotive_cosim.contracts import (
@@ -37,7 +39,7 @@ from automotive_cosim.cosim.attention import Asked
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
+from automotive_cosim.episode.specification import ROUNDING_S, SCREEN, End, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.locate import Geo
@@ -82,7 +84,7 @@ class Session:
     """Turns the receivers' readings into what the agent is told."""
     moments: list[Moment]
     """Moments since the beginning, one per simulated second."""
-    elements: tuple[Element, ...]
+    elements: Sequence[Element]
     """The elements on the screen, to which the next action refers."""
     observation: Observation
     """The agent's present observation."""
@@ -487,11 +489,42 @@ def _seen(
     *,
     lean: bool = False,
     sounds: tuple[bytes, ...] = (),
-) -> tuple[tuple[Element, ...], Observation]:
+) -> tuple[Sequence[Element], Observation]:
     """The elements on the screen, and the agent's observation."""
-    elements = () if lean else world.cockpit.elements()
-    seen = observe(world, goal, begun_s, elements, feedback, channels, said, policy, sounds)
+    listed = world.cockpit.elements() if channels & SCREEN else ()
+    seen = observe(world, goal, begun_s, listed, feedback, channels, said, policy, sounds)
+    elements = listed or (() if lean else _UnseenScreen(world.cockpit))
     return elements, told.observation(seen, world.moment)
+
+
+class _UnseenScreen(Sequence[Element]):
+    """The elements of a screen that no agent is given. They are in the trace, but to lay one out takes as long as
+    all else in a second of a drive; so that is done when somebody asks."""
+
+    def __init__(self, cockpit: Cockpit) -> None:
+        self._cockpit = cockpit.copy()
+
+    @cached_property
+    def _listed(self) -> tuple[Element, ...]:
+        listed = self._cockpit.elements()
+        del self._cockpit
+        return listed
+
+    @overload
+    def __getitem__(self, index: int) -> Element: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Element, ...]: ...
+    def __getitem__(self, index: int | slice) -> Element | tuple[Element, ...]:
+        return self._listed[index]
+
+    def __len__(self) -> int:
+        return len(self._listed)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and self._listed == tuple(other)
+
+    def __hash__(self) -> int:
+        return hash(self._listed)
 
 
 class Actor(Protocol):

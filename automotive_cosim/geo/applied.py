@@ -104,7 +104,7 @@ def facts_at(
     )
 
 
-class Said(NamedTuple):
+class RulesHere(NamedTuple):
     """What rules say here and now."""
 
     limits: tuple[AppliedRule, ...]
@@ -127,9 +127,9 @@ class _Said:
         tests = dict.fromkeys(test for rule in rules for test in rule.tests)
         self._place = Place(layers=layers)
         self._conditions = tuple((CONDITIONS[test.word].holds, test.argument) for test in tests)
-        self._known: dict[Hashable, Said] = {}
+        self._known: dict[Hashable, RulesHere] = {}
 
-    def __call__(self, facts: RuleFacts) -> Said:
+    def __call__(self, facts: RuleFacts) -> RulesHere:
         own = facts.road_class if facts.road_class in OWN_LAW else ""
         answers = own, *[holds(facts, argument) for holds, argument in self._conditions]
         said = self._known.get(answers)
@@ -138,7 +138,7 @@ class _Said:
                 self._known.clear()
             others = tuple(_other_rules(self._place, facts))
             lines = tuple(Line(found.rule.line, found.rule.id) for found in others)
-            said = self._known[answers] = Said(tuple(limits(self._place, facts)), others, lines)
+            said = self._known[answers] = RulesHere(tuple(limits(self._place, facts)), others, lines)
         return said
 
 
@@ -148,7 +148,7 @@ MOST_SAID = 512
 """Of places, and of answers at one of them, that are kept."""
 
 
-def said_at(place: Place, facts: RuleFacts) -> Said:
+def said_at(place: Place, facts: RuleFacts) -> RulesHere:
     """``limits`` here and now, and by topic the rules of the innermost layer that has one for this road."""
     layers = tuple(map(id, place.layers))
     if layers not in _SAID:

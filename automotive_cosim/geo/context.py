@@ -13,7 +13,7 @@ from datetime import datetime
 from functools import cached_property
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
-from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, said_at
+from automotive_cosim.geo.applied import AppliedRule, RulesHere, built_up, facts_at, said_at
 from automotive_cosim.geo.binding import BindingLimit, binding
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
@@ -206,7 +206,7 @@ class GeoContext:
         return facts_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
 
     @cached_property
-    def _said(self) -> Said:
+    def _said(self) -> RulesHere:
         return said_at(self.place, self._facts)
 
 

@@ -11,6 +11,8 @@ the picture alone, a control without letters on it is not named.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from automotive_cosim.cockpit.actions import FIELDS, point
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.widgets import Field, Slider, Widget
@@ -22,7 +24,7 @@ DONE, UNCHANGED = say("done"), say("nothing changed")
 _OUTCOMES = {FeedbackCode.OK: DONE, FeedbackCode.NO_EFFECT: UNCHANGED}
 
 
-def control(action: Action, cockpit: Cockpit, elements: tuple[Element, ...], *, by_name: bool) -> str:
+def control(action: Action, cockpit: Cockpit, elements: Sequence[Element], *, by_name: bool) -> str:
     """The control that an action is about to touch, in the words of the screen; empty if it touches none.
 
     Args:

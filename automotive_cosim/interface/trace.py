@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
@@ -32,7 +32,7 @@ class Step:
 
     number: int
     moment: Moment
-    elements: tuple[Element, ...]
+    elements: Sequence[Element]
     action: Action | None
     feedback: Feedback
     thought_s: float = 0.0

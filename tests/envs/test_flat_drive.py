@@ -118,7 +118,7 @@ def test_the_same_acts_give_the_trace_of_the_drive(flat, ruled, simulations):
     told = {}
     for number in actions:
         *_, told = env.step(ACTIONS[number])
-    assert (told["trace_sha256"], told["score"]) == (info["trace_sha256"], info["score"])
+    assert (told["trace_sha256"], told["score"]) == (flat.episode.trace_sha256, info["score"])
     env.close()
 
 
