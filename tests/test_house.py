@@ -59,7 +59,7 @@ CEILINGS = {
     "tests": (65451, 126, 0),
     "traffic": (12755, 81, 0),
     "view": (1773, 15, 0),
-    "voice": (547, 0, 0),
+    "voice": (571, 0, 0),
     "beside them": (319, 15, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
