@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 MARK = "XDG_RUNTIME_DIR"
@@ -188,28 +188,11 @@ def listings(program: str, cwd: Path) -> dict[str, float]:
     return found
 
 
-def commands(part: str, other: Path, net: str) -> dict[str, float]:
-    """A second ``run`` to its first picture, or the size of a kept drive of ten minutes."""
+def second(other: Path, net: str) -> dict[str, float]:
+    """A first and a second ``run`` to its first picture, with a keeper."""
     program = str(other / ".venv/bin/automotive-cosim")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder, "runs")
-        if part == "kept":
-            words = [
-                "run",
-                "--drive",
-                "grid_june",
-                "--see",
-                "nothing",
-                "--interface",
-                "functions",
-                "--minutes",
-                "10",
-                "--out",
-                str(out),
-            ]
-            took_s = spent_s([program, *words], folder, other)
-            size = sum(file.stat().st_size for file in out.rglob("*") if file.is_file())
-            return {"a drive of ten minutes: s": took_s, "a drive of ten minutes: MB": size / 1e6}
         took = {}
         subprocess.run([program, "keep"], env=os.environ | {MARK: folder}, check=False, capture_output=True)
         for count in ("first", "second"):
@@ -219,16 +202,55 @@ def commands(part: str, other: Path, net: str) -> dict[str, float]:
         return took
 
 
-def part_of(part: str, other: Path, net: str) -> dict[str, float]:
+def kept(other: Path, family: str) -> dict[str, float]:
+    """What a drive of ten minutes takes, what it keeps beside pictures, and how long that takes to read."""
+    program = str(other / ".venv/bin/automotive-cosim")
+    helps = subprocess.run([program, "run", "--help"], capture_output=True, text=True, check=True).stdout
+    drive = ["run", "--drive", family] if "--drive" in helps else ["drive", family]  # as it was until November 2026
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder, "runs")
+        words = [*drive, "--agent", "rule-perfect", "--minutes", "10", "--out", str(out)]
+        took_s = spent_s([program, *words], folder, other)
+        files = [file for file in out.rglob("*") if file.is_file() and file.suffix != ".jpg"]
+        size_mb = sum(file.stat().st_size for file in files) / 1e6
+        told_s = {f"{family}, ten minutes, s": took_s, f"{family}, kept beside pictures, MB": size_mb}
+        return told_s | own("read", other, str(out))
+
+
+def reading(folder: Path) -> dict[str, float]:
+    """Milliseconds to read the road and the steps of a kept drive, least of ten."""
+    from automotive_cosim.run.road import read_record, road_in
+    from automotive_cosim.run.trial_folder import read_steps
+
+    road = road_in(folder)
+    calls = {"road": lambda: read_record(road), "steps": lambda: read_steps(folder)}
+    return {f"to read its {what}, ms": min(taken_ms(call) for _ in range(10)) for what, call in calls.items()}
+
+
+def taken_ms(call: Callable[[], object]) -> float:
+    """Processor time of a call."""
+    begun_s = time.process_time()
+    call()
+    return 1000 * (time.process_time() - begun_s)
+
+
+def part_of(part: str, other: Path, net: str, family: str) -> dict[str, float]:
     """One part, measured once with one checkout."""
-    if part in ("second", "kept"):
-        return commands(part, other, net)
+    if part == "second":
+        return second(other, net)
+    if part == "kept":
+        return kept(other, family)
     if part == "listings":
         return listings(str(other / ".venv/bin/automotive-cosim"), other)
+    return own(part, other, net)
+
+
+def own(part: str, other: Path, path: str) -> dict[str, float]:
+    """A part that is measured within a process of the other checkout."""
     with tempfile.TemporaryDirectory() as mark:
         told = subprocess.run(
             [str(other / ".venv/bin/python"), str(Path(__file__).absolute()), str(other), "--own", part]
-            + (["--net", net] if net else []),
+            + (["--net", path] if path else []),
             cwd=other,
             env=os.environ | {MARK: mark},
             stdout=subprocess.PIPE,
@@ -244,12 +266,16 @@ def main() -> None:
     parser.add_argument("other", type=Path, help="another checkout")
     parser.add_argument("--parts", nargs="*", default=list(PARTS), choices=PARTS)
     parser.add_argument("--net", default="", help="a network, for reset and second")
+    parser.add_argument("--family", default="grid_june", help="of the drive that is kept")
     parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--own", default="", help=argparse.SUPPRESS)
     given = parser.parse_args()
     net = str(Path(given.net).absolute()) if given.net else ""
     if given.own == "reset":
         print(json.dumps(first_reset(net or "paris_centre")))
+        return
+    if given.own == "read":
+        print(json.dumps(reading(Path(net))))
         return
     if given.own:
         for _, chunk in zip(sys.stdin, chunks(is_lean=given.own == "lean"), strict=False):
@@ -261,7 +287,7 @@ def main() -> None:
         rounds = (
             [decisions(part, checkouts, given.rounds)]
             if part in ("lean", "full")
-            else [[part_of(part, each, net) for each in checkouts] for _ in range(given.rounds)]
+            else [[part_of(part, each, net, given.family) for each in checkouts] for _ in range(given.rounds)]
         )
         for name in rounds[0][0]:
             best = max if "per second" in name else min

@@ -16,7 +16,7 @@ from importlib.util import cache_from_source
 from pathlib import Path
 from typing import TypeVar
 
-from automotive_cosim.formats.writing import write_whole
+from automotive_cosim.formats.writing import make_folder, write_whole
 
 T = TypeVar("T")
 PACKAGE = Path(__file__).parents[1]
@@ -34,8 +34,7 @@ def compiled(files: Sequence[Path], make: Callable[[], T]) -> T:
     made = make()
     if not sys.dont_write_bytecode:
         with suppress(OSError):
-            kept.parent.mkdir(exist_ok=True)
-            write_whole(kept, seen + pickle.dumps(made))
+            write_whole(make_folder(kept.parent) / kept.name, seen + pickle.dumps(made))
     return made
 
 

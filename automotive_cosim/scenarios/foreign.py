@@ -206,7 +206,7 @@ class _Elements:
         self.unread: list[str] = []
         """What rerouters have in files of their own, which SUMO passes over without a word."""
 
-    def start(self, name: str, attributes: dict[str, str]) -> None:
+    def start(self, name: str, attributes: dict[str, str], depth: int) -> None:
         """Takes the start of an element."""
         self.names.add(name)
         if name == "rerouter" and (file := attributes.get("file")):
@@ -214,6 +214,3 @@ class _Elements:
                 f"SUMO {VERSION} does not read the file {shown(file)} of rerouter {shown(attributes.get('id'))}: "
                 "write its <interval> elements inside the <rerouter>"
             )
-
-    def end(self, name: str) -> None:
-        """Takes its end."""

@@ -22,7 +22,7 @@ from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_file, opened
 from automotive_cosim.formats.writing import drafted
-from automotive_cosim.formats.xml import SHARED_ENCODINGS, OnStart, scan
+from automotive_cosim.formats.xml import SHARED_ENCODINGS, scan
 from automotive_cosim.traffic.georeference import in_full
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vocabulary import ELEMENTS, INPUTS, OUTPUTS, WRITING_LIGHT, parameter
@@ -47,6 +47,9 @@ TRAVELLERS = VEHICLES | {"flow", "person", "personFlow", "container", "container
 NOT_IN_IDS = re.compile(r"[ \t\n\r|\\;,']")
 """What no id of theirs contains (SUMO's ``routeTypes.xsd``): SUMO would stop when it comes to it."""
 
+FREE = "metadata"
+"""The element within which anything may be."""
+
 NAMING = TRAVELLERS.union(INPUTS, OUTPUTS, ("ride", "transport", "stop"))
 """Elements of which an attribute may have to change."""
 
@@ -54,11 +57,9 @@ NAMING = TRAVELLERS.union(INPUTS, OUTPUTS, ("ride", "transport", "stop"))
 class ElementHandler(Protocol):
     """Reads a file while it is checked."""
 
-    def start(self, name: str, attributes: dict[str, str]) -> None:
-        """Takes the start of an element."""
+    def start(self, name: str, attributes: dict[str, str], depth: int) -> None:
+        """Takes the start of an element, the root at 0."""
         ...
-
-    def end(self, name: str) -> None: ...
 
 
 def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file") -> bytes:
@@ -150,10 +151,13 @@ def _vet(
     what: str = "a SUMO file",
     also: ElementHandler | None = None,
     found: list[Path] | None = None,
+    above: int = 0,
 ) -> str:
     if path.resolve() in through:
         raise ScenarioError(f"{path} includes itself")
-    reader = _Reader(path, folder, name, (*through, path.resolve()), also, [] if found is None else found)
+    reader = _Reader(
+        path, folder, name, (*through, path.resolve()), also, [] if found is None else found, above=above
+    )
     copy = None if folder is None else folder / f"{name}.xml"
     encoding = _scanned(reader, what, copy=copy)
     if copy is not None and (reader.changed or encoding not in SHARED_ENCODINGS):
@@ -167,20 +171,9 @@ def _scanned(
     reader: _Reader, what: str, *, copy: Path | None = None, hashed: Callable[[bytes], object] | None = None
 ) -> str:
     """Checks a file; returns its encoding."""
-    start, end = (reader.start, reader.end) if reader.also is None else _both(reader, reader.also)
-    return scan(reader.path, start, end, error=ScenarioError, what=what, copy=copy, hashed=hashed)
-
-
-def _both(reader: _Reader, also: ElementHandler) -> tuple[OnStart, Callable[[str], None]]:
-    def start(name: str, attributes: dict[str, str], line: int) -> None:
-        also.start(name, attributes)
-        reader.start(name, attributes, line)
-
-    def end(name: str) -> None:
-        also.end(name)
-        reader.end(name)
-
-    return start, end
+    return scan(
+        reader.path, reader.start, reader.ended.append, error=ScenarioError, what=what, copy=copy, hashed=hashed
+    )
 
 
 @dataclass(slots=True)
@@ -203,10 +196,21 @@ class _Reader:
     count: int = 0
     inner: Iterator[int] = field(default_factory=itertools.count)
     """Numbers the files that it names."""
-    within: list[str] = field(default_factory=list)
+    above: int = 0
+    """How deep the element stands that includes this file, and 1 more."""
+    ended: list[str] = field(default_factory=list)
+    """Names of the elements that have ended: to have them listed takes none of a million calls of Python's."""
+    free: int = 2**31
+    """How deep the element stands within which anything may be; impossibly deep outside of one."""
 
     def start(self, name: str, attributes: dict[str, str], line: int) -> None:
-        if name not in ELEMENTS and self.within and "metadata" not in self.within:
+        """Takes the start of an element."""
+        depth = self.count - len(self.ended)
+        if self.also is not None:
+            self.also.start(name, attributes, self.above + depth)
+        if depth <= self.free:
+            self.free = depth if name == FREE else 2**31
+        if name not in ELEMENTS and 0 < depth <= self.free:
             unknown = UnknownNameError("element of SUMO", name[:80], ELEMENTS, "docs/reference/scenarios.md")
             raise ScenarioError(f"{self.path} line {line}: {unknown}")
         if name == "param":
@@ -221,12 +225,7 @@ class _Reader:
             self._rename(name, new, line)
             if new != attributes:
                 self.changed[self.count] = new
-        self.within.append(name)
         self.count += 1
-
-    def end(self, name: str) -> None:
-        """Leaves an element."""
-        self.within.pop()
 
     def _take_parameter(self, attributes: dict[str, str], line: int) -> None:
         key = attributes.get("key", "")
@@ -260,7 +259,8 @@ class _Reader:
         self.found.append(file)
         if element not in LISTS:
             also = self.also if element == "include" else None
-            return _vet(file, self.folder, name, self.through, also=also, found=self.found)
+            above = self.above + self.count - len(self.ended) + 1
+            return _vet(file, self.folder, name, self.through, also=also, found=self.found, above=above)
         if self.folder is not None:
             with opened(file) as given, drafted(self.folder / name) as copy:
                 shutil.copyfileobj(given, copy)

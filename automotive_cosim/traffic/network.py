@@ -27,6 +27,7 @@ connection.
 
 from __future__ import annotations
 
+import itertools
 import math
 import pickle
 from collections.abc import Iterable, Mapping, Sequence
@@ -63,8 +64,8 @@ TIMED_ACCESS = "access:conditional"
 TIMED_TURN = "restriction:conditional:"
 """Before the id of the edge that the turn leads into."""
 
-EDGE_DEPTH, LANE_DEPTH = 2, 3
-"""How deep edges and their lanes stand in the file."""
+EDGE_DEPTH, LANE_DEPTH = 1, 2
+"""How deep edges and their lanes stand in the file, whose root is at 0."""
 
 SIGNED = "signed"
 """What a lane's attributes have here of a limit of its own."""
@@ -292,15 +293,18 @@ class NetworkReader:
         """
         self.path = path
         self.known = known
-        self._depth = 0
         self._edge: Attributes = {}
         self._lanes: list[Attributes] = []
         """Of the edge that is being read, like its parameters."""
         self._params: dict[str, str] = {}
         self.edges: dict[str, Edge] = {}
         self.closed_free_s: dict[str, float] = {}
-        self.inner_lanes: dict[str, Crossing] = {}
+        self.inner_lanes: dict[str, tuple[float, float]] = {}
+        """Length and speed of each within a junction."""
+        self.onward: dict[str, str] = {}
+        """The inner lane that follows one, where a waiting position splits a way through a junction."""
         self.connections: list[_Connection] = []
+        """Those of edges outside of junctions."""
         self.cars_mps: dict[str, float] = {}
         """The limits for cars, by type of road."""
         self.for_trains: set[str] = set()
@@ -309,47 +313,41 @@ class NetworkReader:
         self.location: Mapping[str, str] = {}
         self.left_hand = False
 
-    def start(self, name: str, attributes: Attributes) -> None:
+    def start(self, name: str, attributes: Attributes, depth: int) -> None:
         """Takes the start of an element.
 
         Raises:
             ScenarioError: it is no network's.
-            LookupError: it lacks something, or
-            ValueError: something of it is wrong; ``scan`` says so. Both are also raised by ``end``.
+            LookupError: it, or the edge before it, lacks something, or
+            ValueError: something of it is wrong; ``scan`` says so.
         """
-        self._depth += 1
-        if self._depth == EDGE_DEPTH:
-            if name == "edge":
+        if depth == EDGE_DEPTH:
+            if self._edge:
+                self._take_edge()
+            if name == "connection":
+                self._take_connection(attributes)
+            elif name == "edge":
                 self._edge, self._lanes, self._params = attributes, [], {}
-            elif name == "connection":
-                self.connections.append(_connection(attributes))
             elif name == "location":
                 self.location = attributes
             elif name == "junction" and attributes.get("type") in FOR_TRAINS:
                 self.for_trains.add(attributes["id"])
             self._type = attributes.get("id", "") if name == "type" else ""
-        elif self._depth == LANE_DEPTH and name == "restriction":
+        elif depth == LANE_DEPTH and name == "restriction":
             if self._type and attributes["vClass"] == CARS:
                 self.cars_mps[self._type] = quantity(attributes["speed"], SLOWEST_MPS)
-        elif self._depth == LANE_DEPTH and self._edge:
+        elif depth == LANE_DEPTH and self._edge:
             if name == "lane":
                 self._lanes.append(attributes)
             elif name == "param":
                 self._params[attributes.get("key", "")] = attributes.get("value", "")
-        elif self._depth == LANE_DEPTH + 1 and self._edge and self._lanes and attributes.get("key") == "maxspeed":
+        elif depth == LANE_DEPTH + 1 and self._edge and self._lanes and attributes.get("key") == "maxspeed":
             self._lanes[-1][SIGNED] = attributes.get("value", "")
-        elif self._depth == 1:
+        elif depth == 0:
             self.known = None
             if name != "net":
                 raise ScenarioError(f"{self.path} is not a SUMO network: its root is <{name}>, not <net>")
             self.left_hand = attributes.get("lefthand") in ("true", "1")
-
-    def end(self, name: str) -> None:
-        """Takes the end of an element."""
-        self._depth -= 1
-        if name == "edge" and self._depth == EDGE_DEPTH - 1:
-            self._take_edge(self._edge)
-            self._edge = {}
 
     @without_collection()
     def network(self) -> Network:
@@ -361,6 +359,11 @@ class NetworkReader:
         if self.known is not None:
             known: Network = pickle.loads(self.known.pickled)
             return known
+        try:
+            if self._edge:
+                self._take_edge()
+        except (LookupError, ValueError) as error:
+            raise ScenarioError(f"{self.path} is not {FORM}: {error}") from error
         if not self.edges:
             raise ScenarioError(f"{self.path} has no road that cars may use")
         try:
@@ -378,13 +381,20 @@ class NetworkReader:
         opposite = _opposite(self.edges.values())
         return Network(self.edges, crossings, opposite, roads, doubt, closed_free_s=self.closed_free_s)
 
-    def _take_edge(self, edge: Attributes) -> None:
+    def _take_connection(self, link: Attributes) -> None:
+        if not link["from"].startswith(":"):
+            self.connections.append(_connection(link))
+        elif via := link.get("via"):
+            self.onward[f"{link['from']}_{link['fromLane']}"] = via
+
+    def _take_edge(self) -> None:
+        """Takes the edge that has been read."""
+        edge, self._edge = self._edge, {}
         lanes = [lane for lane in self._lanes if open_to(lane)]
         if edge.get("function") == "internal":
             for lane in lanes:
-                self.inner_lanes[lane["id"]] = Crossing(
-                    quantity(lane["length"], 0.0), quantity(lane["speed"], SLOWEST_MPS)
-                )
+                speed_mps = quantity(lane["speed"], SLOWEST_MPS)
+                self.inner_lanes[lane["id"]] = quantity(lane["length"], 0.0), speed_mps
         elif lanes and "function" not in edge:
             cars_mps = self.cars_mps.get(edge.get("type", ""))
             self.edges[intern(edge["id"])] = _edge(edge, lanes, self._lanes, self._params, cars_mps)
@@ -401,14 +411,13 @@ def read_network(path: Path) -> Network:
     Raises:
         ScenarioError: the file is missing, is not a SUMO network, is truncated, or has no road for cars.
     """
-    reader = NetworkReader(path)
-    scan(
-        path,
-        lambda name, attributes, line: reader.start(name, attributes),
-        reader.end,
-        error=ScenarioError,
-        what=FORM,
-    )
+    reader, ended = NetworkReader(path), list[str]()
+    count = itertools.count()
+
+    def start(name: str, attributes: Attributes, line: int) -> None:
+        reader.start(name, attributes, next(count) - len(ended))
+
+    scan(path, start, ended.append, error=ScenarioError, what=FORM)
     return reader.network()
 
 
@@ -522,7 +531,6 @@ def _crossings(reading: NetworkReader) -> dict[str, dict[str, Crossing]]:
     Raises:
         ScenarioError: a connection names an edge that the network does not have.
     """
-    onward = {link.from_lane: link.via for link in reading.connections if link.from_edge.startswith(":")}
     lanes = {lane for edge in reading.edges.values() for lane in edge.lane_ids}
     links: dict[str, dict[str, list[_Connection]]] = {}
     for link in reading.connections:
@@ -535,20 +543,19 @@ def _crossings(reading: NetworkReader) -> dict[str, dict[str, Crossing]]:
                     )
             links.setdefault(link.from_edge, {}).setdefault(link.to_edge, []).append(link)
     return {
-        here: {there: _through(between, onward, reading) for there, between in ways.items()}
-        for here, ways in links.items()
+        here: {there: _through(between, reading) for there, between in ways.items()} for here, ways in links.items()
     }
 
 
-def _through(links: Sequence[_Connection], onward: Mapping[str, str | None], reading: NetworkReader) -> Crossing:
+def _through(links: Sequence[_Connection], reading: NetworkReader) -> Crossing:
     """The crossing of some connections between two edges; its way is that of the first."""
     link = links[0]
     length_m, speed_mps, via = 0.0, float("inf"), link.via
     while via in reading.inner_lanes:
-        lane = reading.inner_lanes[via]
-        length_m += lane.length_m
-        speed_mps = min(speed_mps, lane.speed_mps)
-        via = onward.get(via)
+        lane_m, lane_mps = reading.inner_lanes[via]
+        length_m += lane_m
+        speed_mps = min(speed_mps, lane_mps)
+        via = reading.onward.get(via)
     lanes = frozenset((each.from_lane, each.to_lane) for each in links)
     has_signal = link.signal is not None and link.signal not in reading.for_trains
     return Crossing(length_m, speed_mps, link.is_straight, has_signal, lanes)

@@ -328,13 +328,10 @@ class _Distributions:
     def __init__(self) -> None:
         self.names: set[str] = set()
 
-    def start(self, name: str, attributes: dict[str, str]) -> None:
+    def start(self, name: str, attributes: dict[str, str], depth: int) -> None:
         """Takes the start of an element."""
         if name == "vTypeDistribution":
             self.names.add(attributes.get("id", ""))
-
-    def end(self, name: str) -> None:
-        """Takes its end."""
 
 
 def edge_data(file: str, begin_s: float, period_s: float) -> str:

@@ -236,6 +236,7 @@ RAW = re.compile(
 """What unpacks or parses without a bound."""
 KEPT_IN = {
     "formats/files.py": "the bounds themselves",
+    "formats/compiled.py": "what this package made of its own files, where Python keeps bytecode",
     "formats/xml.py": "the same",
     "formats/csvs.py": "the same",
     "exchange/incoming.py": "roads that were read within bounds before, and netconvert's",

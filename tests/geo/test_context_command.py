@@ -73,7 +73,7 @@ def test_times_are_the_places_own(time: str, local: str) -> None:
         (("0", "0", "--visibility", "40"), "--visibility requires --weather"),
         (("48.8", "2.3", "--online", "--weather", "3"), "omit --online"),
         (("0", "0", "--rules", "/no/such/folder"), "is not a folder"),
-        (("0", "0", "--rules", str(Path(__file__).parent)), "has no rule files"),
+        (("0", "0", "--rules", str(Path(__file__).parents[1])), "has no rule files"),
         (("0", "0", "--road", "spaceway"), "no road class named 'spaceway'"),
     ],
 )

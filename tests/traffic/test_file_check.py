@@ -6,7 +6,7 @@ import gzip
 import re
 import shutil
 from collections.abc import Mapping
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 
 import pytest
@@ -328,10 +328,8 @@ class _Counted:
 
     count = 0
 
-    def start(self, name: str, attributes: dict[str, str]) -> None:
+    def start(self, name: str, attributes: dict[str, str], depth: int) -> None:
         self.count += 1
-
-    def end(self, name: str) -> None: ...
 
 
 def test_a_file_that_was_checked_is_copied_unread_while_it_is_the_same(tmp_path: Path) -> None:
@@ -351,6 +349,37 @@ def test_a_file_that_was_checked_is_copied_unread_while_it_is_the_same(tmp_path:
     assert read.count > 3
     with pytest.raises(ScenarioError, match="missing"):
         copy_vetted(tmp_path / "none.xml", tmp_path, "copy", read, known=known)
+
+
+class _Depths:
+    """Notes how deep elements stand."""
+
+    def __init__(self) -> None:
+        self.seen: list[tuple[str, int]] = []
+
+    def start(self, name: str, attributes: dict[str, str], depth: int) -> None:
+        self.seen.append((name, depth))
+
+
+def test_who_reads_along_is_told_how_deep_elements_stand_also_in_what_is_included(tmp_path: Path) -> None:
+    (tmp_path / "in.xml").write_text("<routes><vType id='a'><param key='x'/></vType></routes>".replace("'", '"'))
+    (tmp_path / "a.xml").write_text('<routes><route/><include href="in.xml"/><route/></routes>')
+    read = _Depths()
+    with suppress(ScenarioError):  # of the parameter, after all is read
+        vet(tmp_path / "a.xml", read)
+    assert read.seen[:5] == [("routes", 0), ("route", 1), ("include", 1), ("routes", 2), ("vType", 3)]
+
+
+@pytest.mark.parametrize(
+    "after", ["<net:any/>", "</metadata><any/><metadata>", "</metadata><location/><any/><metadata>"]
+)
+def test_anything_may_stand_within_metadata_and_nowhere_else(after: str, tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(f"<net><metadata><any><other/></any><metadata/>{after}</metadata></net>")
+    if after.startswith("</"):
+        with pytest.raises(ScenarioError, match="any"):
+            vet(tmp_path / "a.xml")
+    else:
+        vet(tmp_path / "a.xml")
 
 
 @pytest.mark.parametrize(

@@ -151,6 +151,24 @@ def test_a_file_that_is_no_network_is_refused(tmp_path: Path, text: str) -> None
         read_network(packed)
 
 
+def test_an_edge_that_lacks_something_is_refused_also_as_the_last_of_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "a.net.xml"
+    for after in ("", "<junction/>"):
+        file.write_text(f'<net><edge id="a"><lane id="a_0"/></edge>{after}</net>')
+        with pytest.raises(ScenarioError, match="is not a complete SUMO network"):
+            read_network(file)
+
+
+def test_parameters_of_what_follows_an_edge_are_not_its_own(tmp_path: Path) -> None:
+    file = tmp_path / "a.net.xml"
+    lane = '<lane id="a_0" speed="10" length="50" shape="0,0 50,0"/>'
+    signal = '<tlLogic id="t"><param key="tunnel" value="yes"/></tlLogic>'
+    file.write_text(
+        f'<net><location convBoundary="0,0,9,9"/><edge id="a" from="b" to="c">{lane}</edge>{signal}</net>'
+    )
+    assert not read_network(file).edges["a"].in_tunnel
+
+
 @pytest.mark.sumo
 def test_lengths_are_sumos(grid: Scenario, hurried: EgoPlan) -> None:
     import libsumo

@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim import scenarios
-from automotive_cosim.cli.scenarios import app
+from automotive_cosim.cli.main import app
 from automotive_cosim.errors import UserError
 from automotive_cosim.scenarios.variant import check_demand
 from automotive_cosim.studies.calibration import result
@@ -227,7 +227,18 @@ def test_a_fit_that_gridlocks_is_an_error_and_writes_nothing(
     """Traffic in which every vehicle that waits is too many."""
     monkeypatch.setattr(result, "BACKLOG_SHARE", -1.0)
     out = tmp_path / "out"
-    words = ["calibrate", "grid", "--counts", str(COUNTS), "--out", str(out), "--rounds", "1", "--json"]
+    words = [
+        "scenarios",
+        "calibrate",
+        "grid",
+        "--counts",
+        str(COUNTS),
+        "--out",
+        str(out),
+        "--rounds",
+        "1",
+        "--json",
+    ]
     ran = CliRunner().invoke(app, words)
     assert ran.exit_code == 1
     assert "gridlocks: " in ran.stderr
@@ -260,7 +271,7 @@ def test_what_cannot_be_calibrated_is_refused_before_anything_runs(tmp_path: Pat
 
 @pytest.mark.parametrize("hours", ["9-8", "24", "morning", "-1"])
 def test_hours_are_first_and_last(hours: str) -> None:
-    ran = CliRunner().invoke(app, ["calibrate", "grid", "--counts", str(COUNTS), f"--hours={hours}"])
+    ran = CliRunner().invoke(app, ["scenarios", "calibrate", "grid", "--counts", str(COUNTS), f"--hours={hours}"])
     assert ran.exit_code
     assert "is not FIRST-LAST" in str(ran.exception)
 
