@@ -40,7 +40,7 @@ def compiled(files: Sequence[Path], make: Callable[[], T]) -> T:
 
 @cache
 def program() -> bytes:
-    """Tells this program's code and its Python from others, by the sizes and times of the files."""
+    """Tells this program's code and tables and its Python from others, by the sizes and times of the files."""
     return blake2b(repr((sys.version, *_code(str(PACKAGE)))).encode()).digest()
 
 
@@ -48,5 +48,5 @@ def _code(folder: str) -> Iterator[tuple[str, int, int]]:
     for each in sorted(os.scandir(folder), key=lambda each: each.name):
         if each.is_dir() and each.name != "__pycache__":
             yield from _code(each.path)
-        elif each.name.endswith(".py"):
+        elif each.name.endswith((".py", ".toml")):
             yield each.path, (about := each.stat()).st_size, about.st_mtime_ns

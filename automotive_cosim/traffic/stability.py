@@ -41,7 +41,8 @@ they state."""
 BACKLOG_SHARE_LIMIT = 0.05
 """Maximum share of vehicles still waiting to enter at the end, among all that should have."""
 
-SUMMARY = {"summary-output": "stdout", "summary-output.period": "1"}
+SUMMARY_S = 1
+SUMMARY = {"summary-output": "stdout", "summary-output.period": str(SUMMARY_S)}
 """Options by which ``summary`` is told of each second."""
 
 TELEPORT = "time-to-teleport"
@@ -159,7 +160,7 @@ def measure(
 
     Raises:
         ScenarioError: SUMO refuses the scenario; the message is SUMO's.
-        TrafficError: SUMO hung or was killed.
+        TrafficError: SUMO hung, was killed, or was stopped before its time.
         SetupError: eclipse-sumo is not installed.
     """
     sumo = replace(
@@ -188,6 +189,11 @@ def measure(
                     scenario.as_stated and step["time"] >= end_s
                 ):
                     break
+            else:
+                last_s = tally.last.get("time", begin_s)
+                if not scenario.as_stated and last_s < end_s - 2 * max(step_length_s, SUMMARY_S):
+                    told = f"SUMO ended {scenario.config.name} at {last_s:g} s of {end_s:g}"
+                    raise TrafficError(f"{told}: it was stopped from outside; start again")
     return replace(tally.result(setup), stuck=tuple(_stuck(warnings)))
 
 

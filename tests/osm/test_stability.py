@@ -111,6 +111,7 @@ def _stand_in(folder: Path, script: str, monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 STEP = 'print(\'<step time="1.00" running="1" halting="0" waiting="0" inserted="1"/>\', flush=True)'
+LAST = STEP.replace("1.00", "99999.00")
 
 
 TOLD = pytest.mark.skipif(not processor_time.PROC.is_dir(), reason="no processor time is told")
@@ -142,11 +143,11 @@ def test_a_sumo_that_gets_no_processor_does_not_hang(
     imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It is silent for twice the limit, before its first step and after it, and goes on."""
-    _stand_in(tmp_path, f"time.sleep(1)\n{STEP}\ntime.sleep(1)\n{STEP}", monkeypatch)
+    _stand_in(tmp_path, f"time.sleep(1)\n{STEP}\ntime.sleep(1)\n{LAST}", monkeypatch)
     monkeypatch.setattr(stability, "LOOK_EVERY_S", 0.05)
     for limit in ("LOADING_LIMIT_S", "SILENCE_LIMIT_S"):
         monkeypatch.setattr(stability, limit, 0.5)
-    assert not measure(load(imported[0]), observe_s=60).vehicles_max
+    assert measure(load(imported[0]), observe_s=60).vehicles_max == 1
 
 
 @pytest.mark.parametrize(
@@ -173,4 +174,13 @@ def test_a_sumo_that_is_killed_is_told_from_one_that_refuses(
         measure(load(imported[0]), observe_s=60)
     _stand_in(tmp_path, "sys.exit('Error: no way')", monkeypatch)
     with pytest.raises(ScenarioError, match="no way"):
+        measure(load(imported[0]), observe_s=60)
+
+
+def test_a_sumo_that_is_stopped_is_no_town_without_traffic(
+    imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It ends in good order when it is asked to, as by a machine that shuts down."""
+    _stand_in(tmp_path, STEP, monkeypatch)
+    with pytest.raises(TrafficError, match="stopped from outside"):
         measure(load(imported[0]), observe_s=60)
