@@ -21,7 +21,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -185,7 +185,7 @@ def on_network(streets: int, trips: int) -> str:
     )
 
 
-def throughput(plan: StudyPlan, workers: list[int], nodes: int) -> None:
+def throughput(plan: StudyPlan, workers: list[int], nodes: int, kills: int) -> None:
     """Prints a row for each number of workers, and the model."""
     print("| where | decisions | wall time | decisions a minute | rows |\n|---|---:|---:|---:|---|")
     with tempfile.TemporaryDirectory() as folder:
@@ -196,10 +196,11 @@ def throughput(plan: StudyPlan, workers: list[int], nodes: int) -> None:
             expected = expected or found
             print(row + ("equal |" if found == expected else "DIFFER |"), flush=True)
         if nodes:
-            with on_ray(nodes) as executor:
-                found, row = measured(
-                    plan, Path(folder) / "ray", executor, f"Ray, {nodes} nodes of a CPU", handed_s
-                )
+            killed = f", {kills} killed" if kills else ""
+            with on_ray(nodes) as (executor, replace_node):
+                name = f"Ray, {nodes} nodes of a CPU{killed}"
+                at = {len(plan.jobs()) * (kill + 1) // (kills + 1) for kill in range(kills)}
+                found, row = measured(plan, Path(folder) / "ray", executor, name, handed_s, at, replace_node)
             expected = expected or found
             print(row + ("equal |" if found == expected else "DIFFER |"), flush=True)
     hands_out_s = statistics.median(handed_s)
@@ -221,7 +222,13 @@ def throughput(plan: StudyPlan, workers: list[int], nodes: int) -> None:
 
 
 def measured(
-    plan: StudyPlan, folder: Path, executor: Any, name: str, handed_s: list[float]
+    plan: StudyPlan,
+    folder: Path,
+    executor: Any,
+    name: str,
+    handed_s: list[float],
+    interrupted_at: Collection[int] = (),
+    interrupt: Callable[[], None] = lambda: None,
 ) -> tuple[dict[str, Any], str]:
     """The rows of a study, and the cells of the table.
 
@@ -231,15 +238,26 @@ def measured(
         executor: where it runs.
         name: the first cell.
         handed_s: gets the processor time of this program from each row to the next.
+        interrupted_at: numbers of rows.
+        interrupt: called once there are as many.
     """
     clock_s: list[float] = []
+
+    def tell(_progress: object) -> None:
+        clock_s.append(time.process_time())
+        if len(clock_s) in interrupted_at:
+            interrupt()
+
     begun_s = time.perf_counter()
     with executor:
-        REROUTE.run(plan, folder, executor=executor, tell=lambda progress: clock_s.append(time.process_time()))
+        REROUTE.run(plan, folder, executor=executor, tell=tell)
     took_s = time.perf_counter() - begun_s
     handed_s += [after - before for before, after in pairwise(clock_s[1:])]
     rows = read_rows(folder, TripRow)
     count = sum(len(row.decisions) for row in rows.values())
+    lost = sum(len(row.failed_attempts) for row in rows.values())
+    if interrupted_at:
+        name += f" ({len(rows)} rows, {lost} attempts lost)"
     cells = f"| {name} | {count} | {took_s:.1f} s | {count / took_s * 60:.1f} | "
     return {key: steady(row) for key, row in rows.items()}, cells
 
@@ -259,8 +277,8 @@ def parts(plan: StudyPlan) -> tuple[float, float, float]:
 
 
 @contextmanager
-def on_ray(nodes: int) -> Iterator[Any]:
-    """A cluster of nodes with one CPU each, all on this machine."""
+def on_ray(nodes: int) -> Iterator[tuple[Any, Callable[[], None]]]:
+    """A cluster of nodes with one CPU each, all on this machine, and what kills one and adds another."""
     from ray.cluster_utils import Cluster
 
     from automotive_cosim.run.on_ray import OnRay
@@ -270,7 +288,12 @@ def on_ray(nodes: int) -> Iterator[Any]:
     try:
         for _ in range(nodes - 1):
             cluster.add_node(**node)
-        yield OnRay(str(cluster.address), nodes)
+
+        def replace_node() -> None:
+            cluster.remove_node(next(iter(cluster.worker_nodes)), allow_graceful=False)
+            cluster.add_node(**node)
+
+        yield OnRay(str(cluster.address), nodes), replace_node
     finally:
         cluster.shutdown()
 
@@ -282,6 +305,7 @@ def main() -> None:
     parser.add_argument("--trips", type=int, default=2, help="drives on each grid")
     parser.add_argument("--workers", type=int, nargs="*", default=[], help="numbers of processes")
     parser.add_argument("--ray-nodes", type=int, default=0, help="0 leaves Ray out")
+    parser.add_argument("--kills", type=int, default=0, help="how often a Ray node is killed and another added")
     parser.add_argument("--seeds", type=int, default=4)
     given = parser.parse_args()
     print(f"load {os.getloadavg()[0]:.1f}")
@@ -308,7 +332,7 @@ def main() -> None:
             placebo_every=0,
             incidents=(JAM,),
         )
-        throughput(plan, given.workers, given.ray_nodes)
+        throughput(plan, given.workers, given.ray_nodes, given.kills)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.formats.compiled import compiled
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.tasking.catalogue import described
@@ -97,9 +98,20 @@ class Difficulties:
 @cache
 def measured(task_id: str, half: str) -> Difficulty | None:
     """What is on record of a half as it is now; None if it has changed or is not of the shipped catalogue."""
-    found = shipped().halves.get(f"{task_id}/{half}")
-    known = found is not None and found.outcomes.half == fingerprint(CATALOGUE[task_id], half)
-    return found if known else None
+    found = shipped().halves.get(name := f"{task_id}/{half}")
+    return found if found is not None and found.outcomes.half == _now().get(name) else None
+
+
+@cache
+def _now() -> Mapping[str, str]:
+    """``fingerprint`` of each half of the shipped catalogue, kept, as to make them all takes a fifth of a second."""
+    files = (RECORD, *sorted(CATALOGUE.folder.rglob("*.toml"))) if CATALOGUE.folder else (RECORD,)
+    return compiled(
+        files,
+        lambda: {
+            f"{task.id}/{half}": fingerprint(task, half) for task in CATALOGUE.values() for half in task.halves
+        },
+    )
 
 
 def hardest(task: Task) -> Difficulty | None:
