@@ -49,6 +49,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import json_lines, open_file, opened
 from automotive_cosim.formats.layout import PICTURES, ROAD
+from automotive_cosim.traffic.records import make_seen
 
 FORMAT = 2
 FORMER = 1
@@ -211,7 +212,7 @@ def _record(path: Path) -> RoadRecord:
         names |= {number: (name, *rest) for number, name, *rest in entry.get("vehicles", ())}
         if "at_s" in entry:
             lights = lights | entry["lights"]
-            seen = tuple(SeenVehicle(*names[number], *rest) for number, *rest in entry["seen"])
+            seen = tuple([make_seen(*names[number], *rest) for number, *rest in entry["seen"]])
             incidents = tuple((kind, x_m, y_m) for kind, x_m, y_m in entry["incidents"])
             weather = Weather(**entry["weather"]) if "weather" in entry else weather
             seconds.append(
