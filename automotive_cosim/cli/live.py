@@ -25,8 +25,8 @@ from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.frames import why
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.observer import Shot, TrialObserver
+from automotive_cosim.run.rows import EpisodeRow
+from automotive_cosim.run.trial import Shot, TrialObserver
 from automotive_cosim.run.words import (
     is_over,
     limit_in_words,

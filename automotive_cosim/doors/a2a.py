@@ -37,7 +37,7 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.record import stamped_folder
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import TrialRow
 
 MODES = ["text/plain", "application/json"]
 GRACE_S = 1

@@ -21,9 +21,9 @@ from automotive_cosim.report.consistency import pass_hats
 from automotive_cosim.report.results import Contestant, Results, pairs, read_results
 from automotive_cosim.report.stats import Rate
 from automotive_cosim.report.summary import rate_of
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.scenarios import shipped
 
 CONFIG = (

@@ -29,9 +29,9 @@ from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.report.stats import Interval, wilson
 from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.plan import families_named
 from automotive_cosim.run.row import as_json, from_json
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.tasks import CATALOGUE
 
 __all__ = ["cockpit", "driver", "drives", "high", "low", "verdict"]

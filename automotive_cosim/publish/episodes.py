@@ -23,16 +23,14 @@ from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
 from automotive_cosim.run.coverage import is_outdated
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import IN_RESULT, EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.figures import alerts, driver_load, pixel_taps, questioned
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, PartsHeld, TrialRow
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.tasking.dialogue import dialogue, is_lost, questions
 from automotive_cosim.tasking.instance import Instance, phrased

@@ -23,8 +23,7 @@ from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, Provid
 from automotive_cosim.models.base import estimated_tokens
 from automotive_cosim.models.replay import SUFFIX, shipped, text_digest
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.trial import run_trial
+from automotive_cosim.run.trial import Shot, TrialObserver, run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 SETUP = EpisodeSetup("hvac_fan_max", scenario="grid")

@@ -29,8 +29,8 @@ from automotive_cosim.report.house_rules import house_rules
 from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, LEAST_CLUSTERS, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.fleet_record import fleets_in, read_fleet
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.store import read_trace, trace_file
 
 DRAWS = 2000

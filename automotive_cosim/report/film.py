@@ -17,8 +17,8 @@ from automotive_cosim.report.filmplot import speed_plot
 from automotive_cosim.report.filmroad import RoadPainter, draw_road_sign
 from automotive_cosim.report.frames import SAME_TIME_S, FilmFrame, Frames, save_animation
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import EMPTY, read_record
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
 

@@ -38,8 +38,8 @@ from automotive_cosim.report.frames import (
 from automotive_cosim.report.page import PARTS, embedded
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import EMPTY, read_record
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.timeline import Sample
 
 WIDTH, HEIGHT = 1280, 1192

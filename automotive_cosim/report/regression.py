@@ -16,9 +16,7 @@ from automotive_cosim.report.results import Contestant, Results, contestant, pai
 from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Rate, bracketed, compare
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.report.tables import Table
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, TrialRow
 from automotive_cosim.run.versions import minor
 
 MOST_LISTED = 30

@@ -13,8 +13,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.results import Contestant, Results, not_judged, pairs
 from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Rate, bracketed, compare, mean, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import EpisodeRow, TrialRow
 from automotive_cosim.tasking.task import Dimension, Module, Subset
 from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasks import CATALOGUE

@@ -25,7 +25,6 @@ from automotive_cosim.geo.reckoning import reckon
 from automotive_cosim.interface.trace import Step
 from automotive_cosim.measures.exposure import exposure
 from automotive_cosim.measures.following import following_figures
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.figures import (
     DriverLoad,
     alerts,
@@ -37,9 +36,9 @@ from automotive_cosim.run.figures import (
 )
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.rows import EpisodeRow, PartsHeld, TrialRow
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.run.trial import Answers, TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.policy import Breach

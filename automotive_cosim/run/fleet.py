@@ -19,9 +19,8 @@ from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import InfrastructureError, NoRoomError
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.fleet_record import EVERY_S, FAILS, FleetRecord
-from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.trial import TrialRun
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import TrialRow
+from automotive_cosim.run.trial import Shot, TrialObserver, TrialRun
 from automotive_cosim.traffic.fork import RemoteRoad, RemoteTraffic, Simulations
 from automotive_cosim.traffic.running import seen
 

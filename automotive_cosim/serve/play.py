@@ -32,12 +32,11 @@ from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.record import Recorder, default_folder, stamped_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.rows import TrialRow
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.trial import HUMAN, NO_MODEL, TrialSetup, run_trial
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.trial import HUMAN, NO_MODEL, Shot, TrialObserver, TrialSetup, run_trial
 from automotive_cosim.run.worker import run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
 from automotive_cosim.serve.played import (

@@ -18,8 +18,8 @@ from automotive_cosim.interface.observe import ALL
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.report.stats import LEAST_CLUSTERS
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.record import Recorder
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.trial import run_trial
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.tasking.verdict import PARTS

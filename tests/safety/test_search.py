@@ -18,8 +18,8 @@ from automotive_cosim.drives.staging import BRINGS, ON_REQUEST
 from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.report.stats import upper_bound
 from automotive_cosim.run.budget import Meter, Spent
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.plan import make_plan, read_plan
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit, progress_in_words
 from automotive_cosim.safety.curves import curves, means

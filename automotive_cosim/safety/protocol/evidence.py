@@ -12,8 +12,7 @@ from pathlib import Path
 from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import read_toml
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow
 from automotive_cosim.safety.dossier.subject import Subject
 from automotive_cosim.safety.protocol.told import SHARE, DriveTold
 from automotive_cosim.tasking.task import Dimension

@@ -8,8 +8,7 @@ from itertools import pairwise
 
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType, AlertKind, Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow
 from automotive_cosim.run.store import read_trace
 from automotive_cosim.safety.dossier.subject import Subject
 from automotive_cosim.tasking.checks import AlertGiven, AnyOf, Check

@@ -35,9 +35,8 @@ from automotive_cosim.formats.layout import LIVE
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.models import ChatModel
 from automotive_cosim.run.batch import BatchKind
-from automotive_cosim.run.executor import alone
+from automotive_cosim.run.executor import alone, doing, warming_up
 from automotive_cosim.run.fleet_record import FAILS, FleetRecord
-from automotive_cosim.run.phase import doing, warming_up
 from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.run.script import read_script
 from automotive_cosim.scenarios import Scenario

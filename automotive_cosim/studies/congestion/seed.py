@@ -13,8 +13,7 @@ from functools import partial
 from pathlib import Path
 
 from automotive_cosim.run.batch import BatchKind
-from automotive_cosim.run.executor import alone
-from automotive_cosim.run.phase import doing, warming_up
+from automotive_cosim.run.executor import alone, doing, warming_up
 from automotive_cosim.studies.calls.flow import FlowSummary, flow, take
 from automotive_cosim.studies.calls.ledger import keep_ledger
 from automotive_cosim.studies.congestion.outputs import (
