@@ -156,7 +156,7 @@ def _judged_problems(folder: Path, job: EpisodeSetup, row: EpisodeRow, told: Jso
     yield from _step_problems(file, steps, judged, job.conditions.hear)
     source = judged_file(folder, row.id).relative_to(folder).as_posix()
     verdict = judged_again(row, judged)
-    start, end = judged.trace[0], judged.trace[-1]
+    hand_over, end = judged.trace[0], judged.trace[-1]
     prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]
     seen = _steps(steps, judged)
     load, taps = driver_load(seen), pixel_taps(seen)
@@ -167,12 +167,12 @@ def _judged_problems(folder: Path, job: EpisodeSetup, row: EpisodeRow, told: Jso
         "goal_s": verdict.goal_s,
         "reason_fits": verdict.reason_fits,
         "parameters": {name: plain(value) for name, value in judged.parameters.items()},
-        "country": start.context.country,
-        "alerts": alerts(start, end),
+        "country": hand_over.context.country,
+        "alerts": alerts(hand_over, end),
         **_questions(job, row, judged),
         "steps": len(steps) - 1,
         **_malformed(row, steps),
-        "sim_seconds": round(end.time_s - start.time_s, 3),
+        "sim_seconds": round(end.time_s - hand_over.time_s, 3),
         "thought_s": round(sum(step["thought_s"] for step in steps), 1),
         "trace_sha256": sha256(steps),
         "interaction_s": load.interaction_s,

@@ -188,13 +188,13 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
         row = replace(self.planned(), end=end, **answers.costs)
         if session is None:
             return replace(row, scenario=open_scenario(self.in_scenario).name)
-        verdict, start = session.verdict, session.moments[0]
+        verdict, hand_over = session.verdict, session.moments[0]
         row = replace(
             row,
             scenario=session.scenario.name,
             parameters=dict(session.instance.parameters),
             traffic_seed=session.traffic_seed,
-            country=start.context.country,
+            country=hand_over.context.country,
             agent_error=session.failure,
             steps=len(session.steps) - 1,
             malformed=len(session.malformed),
@@ -219,7 +219,7 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
         measured = following_figures(states_of(driven))
         return replace(
             row,
-            alerts=alerts(start, session.moments[-1]),
+            alerts=alerts(hand_over, session.moments[-1]),
             **questioned(session.questions),
             speed_compliance=compliance(driven),
             min_time_to_collision_s=measured.min_ttc_s,

@@ -363,9 +363,9 @@ def test_a_replay_finds_what_nothing_else_can(ran, simulations):
 
 def test_an_answer_that_the_driver_did_not_understand_is_none(ran):
     row = judged(ran)
-    start, action = read_judged(ran, row.id, Judged).trace[0], Action(ActionType.ANSWER, text="At 20 degrees.")
+    hand_over, action = read_judged(ran, row.id, Judged).trace[0], Action(ActionType.ANSWER, text="At 20 degrees.")
     for words, said, told in (("", (), ("At 20 degrees.",)), ("", (PARDON,), ()), (TALKED_OVER, ("No!",), ())):
-        step = Step(1, start, (), action, Feedback(FeedbackCode.OK, words), said=said)
+        step = Step(1, hand_over, (), action, Feedback(FeedbackCode.OK, words), said=said)
         assert understood(step) == tuple(episodes._answers(step.as_json())) == told
 
 
