@@ -1,4 +1,4 @@
-"""The streets of a network with the ids of their edges, by which incidents, measures and trips name a place."""
+"""The streets of a network and the ids of their edges, by which incidents, interventions and trips name a place."""
 
 from __future__ import annotations
 

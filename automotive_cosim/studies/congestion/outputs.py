@@ -19,7 +19,7 @@ EDGES = "edges"
 """Folder of the flows on every edge, in a study's."""
 JUNCTIONS, OTHER, UNKNOWN = "junctions", "other", "unknown"
 """Inside junctions; edges on which no car may drive; roads whose class the network does not tell."""
-COLUMNS = ("measure", "edge", "from_s", "time_s", "lost_s", "distance_m")
+COLUMNS = ("intervention", "edge", "from_s", "time_s", "lost_s", "distance_m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +113,12 @@ def rounded(flow: FlowSums) -> FlowSums:
 
 
 def write_edges(folder: Path, job: str, measured: Sequence[Sequence[EdgeFlow]]) -> None:
-    """Writes the flows of a seed, those without a measure first, without the inside of junctions.
+    """Writes the flows of a seed, those without an intervention first, without the inside of junctions.
 
     Raises OSError: it cannot be written."""
     lines = (
-        (measure, each.edge, f"{each.from_s:g}", flow.time_s, flow.lost_s, flow.distance_m)
-        for measure, flows in enumerate(measured)
+        (intervention, each.edge, f"{each.from_s:g}", flow.time_s, flow.lost_s, flow.distance_m)
+        for intervention, flows in enumerate(measured)
         for each in flows
         if not each.edge.startswith(":") and (flow := rounded(each.flow))
     )
@@ -129,7 +129,7 @@ def read_edges(path: Path) -> Iterator[EdgeRow]:
     """What ``write_edges`` wrote; nothing if the file is not there."""
     for row in read_packed_csv(path):
         yield EdgeRow(
-            measure=int(row["measure"]),
+            intervention=int(row["intervention"]),
             edge=row["edge"],
             from_s=float(row["from_s"]),
             time_s=float(row["time_s"]),
