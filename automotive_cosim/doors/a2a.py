@@ -205,9 +205,6 @@ def make_app(assessor: Assessor, host: str, port: int, url: str) -> Guarded:
     """The application that serves an assessor.
 
     Args:
-        assessor: runs the assessments.
-        host: where it listens.
-        port: the same.
         url: its address, as its card says.
     """
     told = card(url)

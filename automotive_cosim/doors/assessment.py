@@ -98,12 +98,7 @@ FORM = 'send {"participants": {"ROLE": "http://HOST:PORT"}, "config": {"tasks": 
 
 
 def result_of(asked: Assessment, folder: Path) -> tuple[str, Json]:
-    """The result of an evaluation in a sentence, and as data.
-
-    Args:
-        asked: the assessment.
-        folder: where its evaluation is.
-    """
+    """The result of an evaluation in a sentence, and as data."""
     found = read_results(folder)
     everything = rate_of(found.rows)
     data: Json = {

@@ -82,9 +82,6 @@ class Guarded:
         """Guards an application that listens there.
 
         Args:
-            app: the application.
-            host: where it listens.
-            port: the same.
             token: what a request has to give; None for nothing.
             also: further values of ``Host`` by which it may be asked, such as that of its address in a network.
         """

@@ -57,7 +57,6 @@ def _cockpit(
         tasks: ids, patterns, modules, tags, ``general``, ``safety`` or ``all``, separated by commas.
         seeds: one, or several separated by commas.
         scenario: in place of the tasks' own.
-        pictures: whether it sees the screen.
         conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``; tasks without phrasings in the
             ``language`` are left out.
     """
@@ -165,7 +164,6 @@ def _drives(
     Args:
         families: of drives, patterns, scenarios, seasons or ``all``, separated by commas.
         seeds: one, or several separated by commas; each draws its own drive.
-        pictures: whether it sees the screen.
         errands: whether people aboard also ask for things on the way.
         conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``.
     """

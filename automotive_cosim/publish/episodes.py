@@ -77,7 +77,6 @@ def check_trial(folder: Path, job: TrialSetup, row: TrialRow) -> tuple[Problem, 
 
     Args:
         folder: an evaluation's or an unpacked bundle's.
-        job: the trial in the plan.
     """
     try:
         if large := _too_large(folder, job):

@@ -89,11 +89,8 @@ def replay_fleet(
 
     Args:
         cars: all of the fleet.
-        rows: theirs, by id.
 
-    Raises:
-        CosimError: it cannot be replayed.
-    """
+    Raises CosimError: it cannot be replayed."""
     recorders = [Recorder(car, None) for car in cars]
     stored = [of_drive(folder, car, rows.get(car.id)) for car in cars]
     runs = [TrialRun(car.job, car.player, (each,)) for car, each in zip(stored, recorders, strict=True)]

@@ -96,7 +96,6 @@ def verify(
         replays: how many judged episodes to drive again.
         seed: draws them; the author of the evaluation must not know it, or could leave these drives unforged.
         key: what the trials were drawn from, if they are of the hidden split.
-        workers: processes that judge.
         tell: called with the number of episodes judged so far and of all.
 
     Raises UserError: it is neither, or it cannot be read."""

@@ -68,11 +68,7 @@ class _Tells:
 
 
 def made(simulations: Simulations) -> dict[str, Json]:
-    """Every conversation, by name.
-
-    Args:
-        simulations: warm traffic.
-    """
+    """Every conversation, by name."""
     watcher = Touches()
     setup = replace(SETUP, agent="oracle", model="none")
     run_trial(setup, make_agent("oracle"), (watcher,), simulations=simulations)

@@ -310,9 +310,7 @@ def _intervals_told(groups: dict[Contestant, list[DriveTrialRow]]) -> str:
 def fleets(folder: Path, rows: Sequence[DriveTrialRow]) -> tuple[str, dict[str, str]]:
     """The fleets whose cars were recorded: maps for the report with links, and a page for each by its file.
 
-    Raises:
-        UserError: a record is damaged.
-    """
+    Raises UserError: a record is damaged."""
     known, maps, pages = {row.id: row for row in rows}, [], {}
     for name, _ in fleets_in(folder):
         fleet = read_fleet(folder, name)

@@ -73,7 +73,6 @@ def act_effects(folder: Path, trials: Mapping[str, str]) -> Table:
     """What each act of the trials changed of which that was measured.
 
     Args:
-        folder: the evaluation's.
         trials: their ids, with their names.
     """
     lines = tuple(

@@ -92,11 +92,7 @@ def screen_size() -> tuple[int, int]:
 
 
 def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
-    """Writes the film and the page into a folder that contains both records; returns the page.
-
-    Args:
-        sides: the two, left and right.
-    """
+    """Writes the film and the page into a folder that contains both records; returns the page."""
     frames = [_from_hand_over(side) for side in sides]
     film = folder / FILM
     if all(frames):

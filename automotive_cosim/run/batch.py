@@ -151,7 +151,6 @@ def run_plan(
         folder: results folder, new or to be resumed.
         executor: where to run it; the results do not depend on it.
         retries: how many times a trial is retried after an infrastructure error before the error is recorded.
-        pictures: which screenshots to keep.
         budget: what it may spend on its models, with all earlier starts. Once it is spent, the rest is not run.
         tell: called at the start, after every trial, and in between if that takes long.
 

@@ -168,11 +168,7 @@ class Executor(Protocol):
     """Makes workers and waits for them; a context manager that ends whatever it has started itself."""
 
     def metered(self, budget: Budget, before: Spent) -> AbstractContextManager[MeterHandle]:
-        """A meter that all its workers can use.
-
-        Args:
-            budget: what the evaluation may spend.
-        """
+        """A meter that all its workers can use."""
         ...
 
     @property
@@ -225,8 +221,6 @@ def doing(what: str, amount: str = "", *, is_warm_up: bool = False, share: float
     Args:
         what: the phase, such as ``warming up traffic``.
         amount: how far it is, such as ``120 of 600 s``.
-        is_warm_up: see ``JobPhase``.
-        share: see ``JobPhase``.
     """
     _TELL.get()(what, amount, is_warm_up, share)
 

@@ -48,16 +48,13 @@ def run_fleet(
     Args:
         drives: ``DriveSetup.cars`` of the fleet.
         runs: who acts in each, and who observes.
-        simulations: warm simulations to use.
         folder: where to record how all cars drive (``FleetRecord``); None does not.
         wall_s: wall seconds from each departure after which that drive is cut off.
 
     Returns:
         The rows of all cars.
 
-    Raises:
-        UserError: something in the trials does not exist or is invalid.
-    """
+    Raises UserError: something in the trials does not exist or is invalid."""
     error: InfrastructureError = NoRoomError("no gap opened for it while others of its fleet drove")
     with ExitStack() as ends:
         fleet = _Running(drives, runs, simulations, folder, wall_s, ends)

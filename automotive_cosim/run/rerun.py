@@ -97,9 +97,7 @@ def rerun(
     Args:
         observers: makes those that are notified of everything as it happens.
 
-    Raises:
-        InfrastructureError: the simulation failed.
-    """
+    Raises InfrastructureError: the simulation failed."""
     stored = recorded(folder, trial)
     _, again = played(stored, observers=observers(stored.job))
     return compare(stored.steps, [line for line in again.lines if "step" in line])
@@ -218,7 +216,6 @@ def played(
     and what an evaluation would keep of it.
 
     Args:
-        stored: the trial.
         simulations: warm simulations to use; by default its own.
         observers: notified of everything as it happens.
         player: used instead of a player of its steps.

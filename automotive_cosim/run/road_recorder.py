@@ -132,8 +132,6 @@ class RoadWriter:
 
         Args:
             shapes: lanes, junctions and ground of the whole network.
-            network: the same for maps.
-            about: what is run, by name.
             begin_s: simulation time from which the file counts.
         """
         self._raw = BufferedWriter(growing(path, anew=True))

@@ -433,9 +433,7 @@ class TrialRun:
         Args:
             observers: more of them, from now on.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         self._session = session
         self._observers += observers
         try:

@@ -54,9 +54,7 @@ def run_job(
 ) -> TrialRow:
     """Runs one trial with its agent, as ``run_with`` does, or all drives of a fleet, each with its own.
 
-    Raises:
-        OSError: trace or pictures cannot be written.
-    """
+    Raises OSError: trace or pictures cannot be written."""
     agents = [agent_of(car, fork_server, meter) for car in job.cars]
     if not isinstance(job, DriveSetup) or not job.settings.cars:
         return run_with(agents[0], job, folder, pictures, simulations)
@@ -88,14 +86,7 @@ def run_with(
 ) -> TrialRow:
     """Runs one trial, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
-    Args:
-        folder: the evaluation's.
-        simulations: warm simulations to use.
-        observers: notified before anything is kept.
-
-    Raises:
-        OSError: trace or pictures cannot be written.
-    """
+    Raises OSError: trace or pictures cannot be written."""
     try:
         with _recorded(job, folder, pictures, observers) as (recorder, everyone), agent as acting:
             row = run_trial(job, acting, everyone, simulations=simulations)

@@ -148,7 +148,6 @@ def trying(
 
     Args:
         plan: the agent, its model and limits.
-        folder: where the trials are kept.
         runner: runs a trial; None runs it with the agent of its name.
         executor: where trials run that do not depend on each other; it has been entered.
         budget: what may be used, with earlier starts.

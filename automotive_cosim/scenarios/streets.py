@@ -25,9 +25,7 @@ class StreetEdges:
 def streets(scenario: Scenario) -> list[StreetEdges]:
     """The streets that are open to cars, the longest first, and at last the edges without a name.
 
-    Raises:
-        ScenarioError: the network cannot be read.
-    """
+    Raises ScenarioError: the network cannot be read."""
     found: dict[str, list[Edge]] = {}
     for edge in read_network(read_configuration(scenario.config).net).edges.values():
         found.setdefault(edge.name, []).append(edge)

@@ -200,9 +200,7 @@ class Content:
     def study(self, name: str, part: str, *items: str) -> Json:
         """A part of a study, of those that its kind has for pages, or of an evaluation's fleets.
 
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        Raises UserError: it is not here, or cannot be read."""
         entry = self.records.entry(name)
         kind = kind_of(read_manifest(entry.folder)["plan"]) if entry.is_evaluation else None
         if kind is not None:

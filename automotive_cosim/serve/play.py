@@ -131,8 +131,6 @@ class Game(TrialObserver):
 
         Args:
             half: ``first``, ``second``, or empty to let the seed choose.
-            seed: seed of the episode.
-            name: code name of the person.
             practice: it may be paused and slowed, and gives no row.
 
         Raises UserError: one is running, there is no such task or half, or the name is no code name."""
@@ -155,7 +153,6 @@ class Game(TrialObserver):
         """Begins a drive.
 
         Args:
-            name: code name of the person.
             practice: it may be paused and slowed, and does not count.
 
         Raises UserError: an episode is running, there is no such family, or the name is no code name."""

@@ -181,7 +181,6 @@ def is_lost(said: Collection[str], feedback: str | None) -> bool:
 
     Args:
         said: what he said in it.
-        feedback: what the agent was told.
     """
     return PARDON in said or feedback == TALKED_OVER
 

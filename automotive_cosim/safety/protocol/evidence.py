@@ -121,8 +121,6 @@ def evidence(made: Protocol, subject: Subject, drives: Sequence[DriveTold] = ())
     """What speaks for each row, in the order of the protocol's file.
 
     Args:
-        made: the protocol.
-        subject: whose trials.
         drives: on which limits were told; the accuracy's rows are about these.
     """
     told = {

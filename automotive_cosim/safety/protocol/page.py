@@ -36,7 +36,6 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
 
     Args:
         folder: of ``eval`` or ``search``.
-        name: of the protocol.
         agent: whose cases; empty if there is only one.
 
     Returns:

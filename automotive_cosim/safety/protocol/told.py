@@ -109,9 +109,7 @@ def told_on(row: DriveTrialRow, told: Sequence[tuple[float, float]], timeline: J
     """What was told on a drive.
 
     Args:
-        row: the drive.
         told: times since departure, in seconds, and speeds told then, in km/h.
-        timeline: of the drive (``drives.timeline``).
     """
     times, limits, speeds = (timeline[name] for name in ("time_s", "limit_kmh", "speed_kmh"))
     metres, gone_m = [0.0], 0.0

@@ -37,7 +37,6 @@ def read_flows(
     """The flows of a run, edge by edge and interval by interval.
 
     Args:
-        folder: SUMO's outputs.
         begin_s: simulation time from which ``from_s`` counts.
         slowed: for every interval, edges with a lower limit than usual: its share of the usual one, against which
             time is lost there, and the time of vehicles at their stops, which is not lost.
