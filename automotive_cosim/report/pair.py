@@ -21,7 +21,7 @@ from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import ROAD as ROAD_FILE
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.geo.text import amount_of_speed
-from automotive_cosim.report.filmplot import speeds_plot
+from automotive_cosim.report.film import speeds_plot
 from automotive_cosim.report.filmroad import RoadPainter, draw_road_sign
 from automotive_cosim.report.frames import (
     AFTER,

@@ -33,8 +33,8 @@ from automotive_cosim.formats.writing import growing, make_folder
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.road import FORMAT, SeenColumns
+from automotive_cosim.run.timeline import limit_kmh
 from automotive_cosim.run.trial import Shot, TrialObserver
-from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
 
 EVERYWHERE_M = 1e9

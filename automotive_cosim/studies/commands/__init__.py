@@ -2,9 +2,8 @@
 
 import typer
 
-from automotive_cosim.studies.commands.compare import compare
 from automotive_cosim.studies.commands.network import COMMANDS
-from automotive_cosim.studies.commands.reroute import reroute
+from automotive_cosim.studies.commands.reroute import compare, reroute
 
 app = typer.Typer(
     help="Measure what rerouting saves and what an intervention does to congestion.", no_args_is_help=True
