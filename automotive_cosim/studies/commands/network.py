@@ -28,7 +28,7 @@ def congestion(
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
-    """Intervention the delay of a whole network before and after an intervention, in copies of the same traffic.
+    """Measure the delay of a whole network before and after an intervention, in copies of the same traffic.
 
     Rerun the command to resume a stopped study.
     """
