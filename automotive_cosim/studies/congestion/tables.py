@@ -7,7 +7,7 @@ from datetime import timedelta
 from statistics import fmean
 
 from automotive_cosim.contracts import KMH_PER_MPS
-from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.report.tables import Table, TableRecord, TableRow
 from automotive_cosim.studies.congestion.results import (
     HOUR_S,
     WHOLE,
@@ -51,7 +51,7 @@ def mean(study: CongestionStudy, intervention: str, of: Callable[[InterventionOu
 def whole(study: CongestionStudy) -> Table:
     """The network as a whole, without an intervention and with each."""
     plan = study.plan
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for intervention in study.interventions:
         outcomes = [outcome for _, outcome in study.outcomes(intervention)]
         found = indices(plan, outcomes)
@@ -60,47 +60,31 @@ def whole(study: CongestionStudy) -> Table:
         flow = sum((flow_in(plan, outcome) for outcome in outcomes), FlowSums())
         before_h = mean(study, "", lambda each: delay_h(plan, each))
         added = change(study, intervention) if intervention else None
+        waiting_s = mean(study, intervention, lambda each: waited_s(plan, each))
         rows.append(
-            (
-                name_of(intervention),
-                f"{mean(study, intervention, lambda each: delay_h(plan, each)):.2f}",
-                told_mean(added, "+.2f"),
-                NONE if added is None or not before_h else told(added.value / before_h, "+.0%"),
-                told_mean(
+            {
+                "Intervention": name_of(intervention),
+                "Delay, veh-h/h": f"{mean(study, intervention, lambda each: delay_h(plan, each)):.2f}",
+                "Change, veh-h/h": told_mean(added, "+.2f"),
+                "Change": NONE if added is None or not before_h else told(added.value / before_h, "+.0%"),
+                "Detours, veh-h/h": told_mean(
                     paired(study, intervention, lambda one, two: detour_h(plan, one, two))
                     if intervention
                     else None,
                     "+.2f",
                 ),
-                told_mean(cost(study, intervention) if intervention else None, "+.2f"),
-                f"{found.travel_time:.2f}",
-                f"{found.planning_time:.2f}",
-                f"{found.buffer:.0%}",
-                f"{KMH_PER_MPS * flow.distance_m / flow.time_s:.1f}",
-                f"{mean(study, intervention, lambda each: queue_m(plan, each)[0]):.0f}",
-                f"{max(queue_m(plan, each)[1] for each in outcomes):.0f}",
-                f"{mean(study, intervention, lambda each: throughput_per_h(plan, each)):.0f}",
-                f"{flow.distance_m / 1000 / len(outcomes) / WHOLE.hours(plan):.0f}",
-                f"{mean(study, intervention, lambda each: waited_s(plan, each)) / HOUR_S / WHOLE.hours(plan):.2f}",
-            )
+                "Both, veh-h/h": told_mean(cost(study, intervention) if intervention else None, "+.2f"),
+                "Travel time index": f"{found.travel_time:.2f}",
+                "Planning time index": f"{found.planning_time:.2f}",
+                "Buffer index": f"{found.buffer:.0%}",
+                "Mean speed, km/h": f"{KMH_PER_MPS * flow.distance_m / flow.time_s:.1f}",
+                "Queues, m": f"{mean(study, intervention, lambda each: queue_m(plan, each)[0]):.0f}",
+                "Longest queue, m": f"{max(queue_m(plan, each)[1] for each in outcomes):.0f}",
+                "Arrivals per h": f"{mean(study, intervention, lambda each: throughput_per_h(plan, each)):.0f}",
+                "Veh-km per h": f"{flow.distance_m / 1000 / len(outcomes) / WHOLE.hours(plan):.0f}",
+                "Waiting outside, veh-h/h": f"{waiting_s / HOUR_S / WHOLE.hours(plan):.2f}",
+            }
         )
-    columns = (
-        "Intervention",
-        "Delay, veh-h/h",
-        "Change, veh-h/h",
-        "Change",
-        "Detours, veh-h/h",
-        "Both, veh-h/h",
-        "Travel time index",
-        "Planning time index",
-        "Buffer index",
-        "Mean speed, km/h",
-        "Queues, m",
-        "Longest queue, m",
-        "Arrivals per h",
-        "Veh-km per h",
-        "Waiting outside, veh-h/h",
-    )
     note = (
         "Means over the seeds. Delay: vehicle-hours of time lost on the road (SUMO's time loss, signals included) "
         "and of waiting outside for room to enter. Change: of the delay, seed by seed, against the copy of the same"
@@ -110,13 +94,13 @@ def whole(study: CongestionStudy) -> Table:
         " its 95th percentile over all five minutes of all seeds; buffer index: what that exceeds the mean by. "
         "Queues: mean total length; longest: of a lane, in any seed."
     )
-    return Table("whole", "The network with each intervention", columns, tuple(rows), note)
+    return Table.of("whole", "The network with each intervention", rows, note)
 
 
 def by_class(study: CongestionStudy) -> Table:
     """The same by class of road and period of the demand."""
     plan = study.plan
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     periods = (None, *range(len(plan.demand))) if len(plan.demand) > 1 else (None,)
     for period in periods:
         for road_class in study.classes:
@@ -129,39 +113,28 @@ def by_class(study: CongestionStudy) -> Table:
                 flow = sum((flow_in(plan, outcome, part) for outcome in outcomes), FlowSums())
                 queues = [queue_m(plan, outcome, part) for outcome in outcomes]
                 rows.append(
-                    (
-                        *((period_name(study, period),) if len(periods) > 1 else ()),
-                        road_class,
-                        name_of(intervention),
-                        f"{fmean(delay_h(plan, each, part) for each in outcomes):.2f}",
-                        told_mean(change(study, intervention, part) if intervention else None, "+.2f"),
-                        f"{found.travel_time:.2f}",
-                        f"{found.planning_time:.2f}",
-                        f"{found.buffer:.0%}",
-                        f"{fmean(total for total, _ in queues):.0f}",
-                        f"{max(longest for _, longest in queues):.0f}",
-                        f"{flow.distance_m / 1000 / len(outcomes) / part.hours(plan):.0f}",
-                    )
+                    {
+                        **({"Time": period_name(study, period)} if len(periods) > 1 else {}),
+                        "Road class": road_class,
+                        "Intervention": name_of(intervention),
+                        "Time lost, veh-h/h": f"{fmean(delay_h(plan, each, part) for each in outcomes):.2f}",
+                        "Change, veh-h/h": told_mean(
+                            change(study, intervention, part) if intervention else None, "+.2f"
+                        ),
+                        "Travel time index": f"{found.travel_time:.2f}",
+                        "Planning time index": f"{found.planning_time:.2f}",
+                        "Buffer index": f"{found.buffer:.0%}",
+                        "Queues, m": f"{fmean(total for total, _ in queues):.0f}",
+                        "Longest queue, m": f"{max(longest for _, longest in queues):.0f}",
+                        "Veh-km per h": f"{flow.distance_m / 1000 / len(outcomes) / part.hours(plan):.0f}",
+                    }
                 )
-    columns = (
-        *(("Time",) if len(periods) > 1 else ()),
-        "Road class",
-        "Intervention",
-        "Time lost, veh-h/h",
-        "Change, veh-h/h",
-        "Travel time index",
-        "Planning time index",
-        "Buffer index",
-        "Queues, m",
-        "Longest queue, m",
-        "Veh-km per h",
-    )
     note = (
         "Classes are OpenStreetMap's. Time lost: on the road, the part of the delay that belongs to a class; "
         "waiting outside belongs to none. Other figures as above."
     )
     title = "By class of road and hour" if len(periods) > 1 else "By class of road"
-    return Table("by_class", title, columns, tuple(rows), note, heads=len(columns) - 8)
+    return Table.of("by_class", title, rows, note, heads=2 + (len(periods) > 1))
 
 
 def period_name(study: CongestionStudy, period: int | None) -> str:
@@ -181,20 +154,20 @@ def emissions(study: CongestionStudy) -> Table:
     def per_h(outcome: InterventionOutcome, name: str, of: Callable[[Emitted], float]) -> float:
         return sum(of(each) for each in outcome.emitted if each.emission_class == name) / hours
 
-    kinds: tuple[tuple[Callable[[Emitted], float], str], ...] = (
-        (lambda each: each.co2_g / 1000, ".1f"),
-        (lambda each: each.nox_g, ".1f"),
-        (lambda each: each.fuel_g / 1000, ".1f"),
-        (lambda each: each.energy_wh / 1000, ".2f"),
-        (lambda each: each.noise_s / HOUR_S, ".2f"),
-    )
+    kinds: dict[str, tuple[Callable[[Emitted], float], str]] = {
+        "CO2, kg/h": (lambda each: each.co2_g / 1000, ".1f"),
+        "NOx, g/h": (lambda each: each.nox_g, ".1f"),
+        "Fuel, kg/h": (lambda each: each.fuel_g / 1000, ".1f"),
+        "Electricity, kWh/h": (lambda each: each.energy_wh / 1000, ".2f"),
+        "Noise, h/h": (lambda each: each.noise_s / HOUR_S, ".2f"),
+    }
     named = sorted({each.emission_class for _, outcome in study.outcomes("") for each in outcome.emitted})
     rows: list[TableRow] = []
     for name in named:
         before = dict(study.outcomes(""))
         for intervention in study.interventions:
             cells = []
-            for of, form in kinds:
+            for of, form in kinds.values():
                 if intervention:
                     added = seed_mean(
                         (seed, per_h(outcome, name, of) - per_h(before[seed], name, of))
@@ -204,20 +177,12 @@ def emissions(study: CongestionStudy) -> Table:
                 else:
                     cells.append(f"{fmean(per_h(each, name, of) for each in before.values()):{form}}")
             rows.append((name, name_of(intervention), *cells))
-    columns = (
-        "Emission class",
-        "Intervention",
-        "CO2, kg/h",
-        "NOx, g/h",
-        "Fuel, kg/h",
-        "Electricity, kWh/h",
-        "Noise, h/h",
-    )
     note = (
         "Without an intervention as it is, with one as the change. Classes are those that the demand's vehicle "
         "types declare (emissionClass), else SUMO's own for the kind of vehicle. Noise is sound energy at the "
         "vehicles (Harmonoise), in hours of a car at 50 km/h, 65 dB(A)."
     )
+    columns = "Emission class", "Intervention", *kinds
     return Table("emissions", "Emissions and consumption", columns, tuple(rows), note, heads=2)
 
 

@@ -10,7 +10,7 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.files import write_files
-from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.report.tables import Table, TableRecord, TableRow
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
@@ -44,7 +44,7 @@ def circumstances(study: Study) -> list[Table]:
 def bounds(study: Study) -> Table:
     """The mean gain with the excluded decisions included."""
     left_out = [point for point in all_decisions(study.rows) if point.decision.excluded]
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for share, policy, age_s, told in groups(study) if left_out else ():
         if policy in STAYING:
             continue
@@ -59,72 +59,51 @@ def bounds(study: Study) -> Table:
         unknown = [choice.seed for reason, choice in put_in if reason == NOT_ARRIVED]
         worst_s, best_s = (end(gain_s for _, gain_s in known) for end in (min, max))
         rows.append(
-            (
-                f"{share:.0%}",
-                policy,
-                f"{age_s:g}" if goes_by_news(policy) else NONE,
-                str(len(told)),
-                told_mean(seed_mean(_gains(told)), "+.1f"),
-                str(len(put_in) - len(unknown)),
-                told_mean(seed_mean(known), "+.1f"),
-                str(len(unknown)),
-                *(
-                    told_mean(seed_mean([*known, *((seed, end_s) for seed in unknown)]), "+.1f")
-                    for end_s in (worst_s, best_s)
-                ),
-            )
+            {
+                "Share rerouting": f"{share:.0%}",
+                "Policy": policy,
+                "News age, s": f"{age_s:g}" if goes_by_news(policy) else NONE,
+                "Counted": str(len(told)),
+                "Time saved, s": told_mean(seed_mean(_gains(told)), "+.1f"),
+                "Excluded, measured": str(len(put_in) - len(unknown)),
+                "With these, s": told_mean(seed_mean(known), "+.1f"),
+                "Not measured": str(len(unknown)),
+                **{
+                    at: told_mean(seed_mean([*known, *((seed, end_s) for seed in unknown)]), "+.1f")
+                    for at, end_s in (("At worst, s", worst_s), ("At best, s", best_s))
+                },
+            }
         )
-    columns = (
-        "Share rerouting",
-        "Policy",
-        "News age, s",
-        "Counted",
-        "Time saved, s",
-        "Excluded, measured",
-        "With these, s",
-        "Not measured",
-        "At worst, s",
-        "At best, s",
-    )
     note = (
         "Exclusion depends on the outcome, so it could favour a policy. Decisions that are excluded although "
         "the ego arrived on every route are included as measured; those in which it did not arrive get the worst "
         "loss and the best gain of all others. Figures measured in a gridlock say little by themselves."
     )
-    return Table("bounds", "With the excluded decisions included", columns, tuple(rows), note, heads=3)
+    return Table.of("bounds", "With the excluded decisions included", rows, note, heads=3)
 
 
 def traffic(study: Study) -> Table:
     """The traffic as a whole at the decisions."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for share in sorted({row.share for row in study.rows}):
         points = [point for point in all_decisions(study.rows) if point.drive.share == share]
         summaries = [summary for point in points if (summary := point.decision.traffic) is not None]
         if summaries:
             rows.append(
-                (
-                    f"{share:.0%}",
-                    str(len(summaries)),
-                    f"{fmean(each.running for each in summaries):.0f}",
-                    f"{fmean(each.halted / max(1, each.running) for each in summaries):.0%}",
-                    str(max(each.stuck for each in summaries)),
-                    str(max(each.backlog for each in summaries)),
-                    str(max(each.teleported for each in summaries)),
-                )
+                {
+                    "Share rerouting": f"{share:.0%}",
+                    "Decisions": str(len(summaries)),
+                    "Vehicles on the road": f"{fmean(each.running for each in summaries):.0f}",
+                    "Standing": f"{fmean(each.halted / max(1, each.running) for each in summaries):.0%}",
+                    "Max. waiting for 300 s": str(max(each.stuck for each in summaries)),
+                    "Max. without room to enter": str(max(each.backlog for each in summaries)),
+                    "Max. teleports": str(max(each.teleported for each in summaries)),
+                }
             )
-    columns = (
-        "Share rerouting",
-        "Decisions",
-        "Vehicles on the road",
-        "Standing",
-        "Max. waiting for 300 s",
-        "Max. without room to enter",
-        "Max. teleports",
-    )
     note = (
         "At all decisions, excluded ones included. Vehicles without room to enter wait outside and are no gridlock."
     )
-    return Table("traffic", "The traffic at the decisions", columns, tuple(rows), note)
+    return Table.of("traffic", "The traffic at the decisions", rows, note)
 
 
 def by_departure(study: Study) -> Table:
