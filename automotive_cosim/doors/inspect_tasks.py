@@ -7,6 +7,7 @@ it is. Needs the package ``inspect-ai``
 (extra ``harnesses``).
 """
 
+# pyright: reportMissingImports=false
 from __future__ import annotations
 
 import base64
