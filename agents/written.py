@@ -65,7 +65,6 @@ def written(text: str, schemas: Mapping[str, Json]) -> list[WrittenCall]:
     """Name and arguments of each call in an answer's words, in their order.
 
     Args:
-        text: the words, without thoughts.
         schemas: of the parameters, by function; texts in tags become what they say. A call alone, without any mark,
             is one only of these functions.
     """

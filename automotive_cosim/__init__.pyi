@@ -11,8 +11,8 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.results import load_results
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import Plan, make_plan
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.trial import run_trial
 
 __all__ = [

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.run.budget import Spent
+from automotive_cosim.run.executor import JobPhase
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.phase import JobPhase
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.worker import run_job

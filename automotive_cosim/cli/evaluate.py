@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from automotive_cosim.report.results import Results
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.plan import Plan
-    from automotive_cosim.run.trial_row import TrialRow
+    from automotive_cosim.run.rows import TrialRow
 
 
 @takes_conditions(lists=True)

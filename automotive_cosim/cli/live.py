@@ -25,15 +25,9 @@ from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.frames import why
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.words import (
-    is_over,
-    limit_in_words,
-    limit_kmh,
-    road_in_words,
-    speed_in_words,
-)
+from automotive_cosim.run.rows import EpisodeRow
+from automotive_cosim.run.timeline import is_over, limit_in_words, limit_kmh, road_in_words, speed_in_words
+from automotive_cosim.run.trial import Shot, TrialObserver
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.difference import notes_of
 from automotive_cosim.tasking.policy import first_breaches

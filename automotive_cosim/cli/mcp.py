@@ -38,7 +38,7 @@ def mcp(**settings: Any) -> None:
             talk.start()
             talk.join()
         else:
-            from automotive_cosim.doors.mcp_http import serve_http
+            from automotive_cosim.doors.guard import serve_http
 
             (host, port) = told.http
             token = os.environ.get("AUTOMOTIVE_COSIM_MCP_TOKEN") or secrets.token_urlsafe(24)

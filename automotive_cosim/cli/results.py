@@ -16,8 +16,7 @@ from automotive_cosim.errors import install_hint
 
 if TYPE_CHECKING:
     from automotive_cosim.run.effect import ActEffect
-    from automotive_cosim.run.observer import TrialObserver
-    from automotive_cosim.run.trial import TrialSetup
+    from automotive_cosim.run.trial import TrialObserver, TrialSetup
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 

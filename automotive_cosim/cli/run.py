@@ -36,8 +36,8 @@ from automotive_cosim.run.settings import SingleSettings
 if TYPE_CHECKING:
     from automotive_cosim.agents import Agent
     from automotive_cosim.run.episode import EpisodeSetup
-    from automotive_cosim.run.observer import TrialObserver
-    from automotive_cosim.run.trial_row import TrialRow
+    from automotive_cosim.run.rows import TrialRow
+    from automotive_cosim.run.trial import TrialObserver
     from automotive_cosim.traffic.fork import Simulations
 
 HEADLINE = (

@@ -57,7 +57,7 @@ def show(
     scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")],
     as_json: AsJson = False,
 ) -> None:
-    """Show one scenario: its place, time, weather, ego trips, and the edges that options such as --measure name."""
+    """Show one scenario: its place, time, weather, ego trips, and the edges that options like --incident name."""
     from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.scenarios.streets import streets
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console as Output
     from automotive_cosim.contracts import Json
     from automotive_cosim.run.plan import Plan
-    from automotive_cosim.run.trial_row import TrialRow
+    from automotive_cosim.run.rows import TrialRow
     from automotive_cosim.safety.budget import SearchBudget
     from automotive_cosim.safety.hunt import Hunt, MinimalFailure
     from automotive_cosim.safety.space import Space

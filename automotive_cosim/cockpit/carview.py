@@ -39,7 +39,6 @@ def car(
         windshield: its opacity in tenths.
         rear_window: its opacity in tenths.
         palette: the colours of what is around it.
-        night: whether it is dark.
     """
     unit = width / 300
     x, y = width / 2, height / 2 + SHIFT_DOWN * unit

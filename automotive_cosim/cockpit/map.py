@@ -123,7 +123,6 @@ class RoadMap:
 
         Args:
             area: the map's area on the screen.
-            avoid: boxes that must stay free.
         """
         view = View(camera, 1 / camera.metres_per_pixel, area.width / 2, area.height * camera.down)
         found = np.sort(self._named_tree.query(view.bounds(area.width, area.height)))

@@ -104,7 +104,6 @@ def _sheet(
         scale: pixels per logical pixel.
         route: edges of the route ahead.
         slow: edges and the relative speed of their traffic.
-        palette: its colours.
     """
     column, row, step = place
     camera = Camera(0.0, 0.0, heading_deg, metres_per_pixel)

@@ -78,9 +78,7 @@ class Signal(Generic[T]):
     def check(self, value: Any) -> T:
         """The value to store; an int becomes a float if floats are expected.
 
-        Raises:
-            SignalError: wrong type, out of range or not among the allowed values.
-        """
+        Raises SignalError: wrong type, out of range or not among the allowed values."""
         valid: T = value
         if type(value) is float and self._floats[0] <= value <= self._floats[1]:  # as most are
             return valid

@@ -178,10 +178,7 @@ def couple(
     """Couples a drive and a cockpit that has not looked outside yet.
 
     Args:
-        traffic: the ego's drive.
-        cockpit: the car's cockpit.
         scenario: the scenario; without a place on earth, the car has no receiver.
-        gps_rng: source of the receiver's errors.
         gps_is_steady: whether it shows a car that stands in one place.
         weather: the timeline, in seconds after departure.
         departure: local time of the traffic's present state, zone-aware.

@@ -1,4 +1,4 @@
-"""What a server over HTTP asks of each request.
+"""What a server over HTTP asks of each request, and that of the Model Context Protocol.
 
 A browser's page on this machine can send requests here, and so can another machine if the address is not a local
 one: a request names this server, comes from no other site and, where there is a token, has it, in its address
@@ -14,12 +14,26 @@ from http import HTTPStatus
 from typing import Any, ClassVar
 from urllib.parse import parse_qs
 
+import uvicorn
+from mcp.server.mcpserver import MCPServer
+from mcp.server.transport_security import TransportSecuritySettings
 from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.protocols.http.auto import AutoHTTPProtocol
 
 from automotive_cosim.service.own_names import is_own, own_names
+
+NOT_ITS_OWN = TransportSecuritySettings(enable_dns_rebinding_protection=False)
+"""``Guarded`` asks for more."""
+
+
+def serve_http(server: MCPServer[Any], host: str, port: int, token: str) -> None:
+    """Serves until it is interrupted. Raises SystemExit: the address cannot be used."""
+    app = server.streamable_http_app(max_request_body_size=MOST_BYTES, transport_security=NOT_ITS_OWN)
+    guarded = Guarded(app, host, port, token)
+    uvicorn.run(guarded, host=host, port=port, log_level="warning", http=Punctual)
+
 
 OTHER_SITE = "other sites may not use this"
 MOST_BYTES = 2**20
@@ -82,9 +96,6 @@ class Guarded:
         """Guards an application that listens there.
 
         Args:
-            app: the application.
-            host: where it listens.
-            port: the same.
             token: what a request has to give; None for nothing.
             also: further values of ``Host`` by which it may be asked, such as that of its address in a network.
         """

@@ -119,7 +119,6 @@ def make_server(
     """A server of the service's episodes, not yet running. The caller closes the service.
 
     Args:
-        service: runs the episodes.
         interface: how agents act unless ``start`` says otherwise. With ``functions`` or ``both``, every function of
             the car is a tool from the beginning, else from the first episode that is started with them: the
             protocol has no sessions that could have tools of their own.

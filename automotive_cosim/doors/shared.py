@@ -118,7 +118,6 @@ def trial(
         seed: 0 if none is given.
         scenario: in place of the task's or the family's own.
         minutes: when a drive is over, if its script ends later.
-        under: the conditions.
         errands: whether people aboard also ask for things on a drive.
 
     Raises UserError: there is not one of task and drive, or something that does not fit it."""
@@ -173,10 +172,8 @@ def typed(function: Function, call: F, *first: inspect.Parameter, returns: objec
     """A function of the car as a host that reads signatures takes it.
 
     Args:
-        function: the function.
         call: what to call with the arguments by name.
         first: further parameters, in front of the function's own.
-        returns: what it returns.
     """
     own = [
         inspect.Parameter(

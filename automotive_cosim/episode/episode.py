@@ -198,22 +198,22 @@ class Episode(JudgedSession):
     def _talked_over(self, action: Action) -> tuple[Feedback, float, tuple[str, ...]] | None:
         if action.action_type not in (ActionType.ASK_DRIVER, ActionType.ANSWER):
             return None
-        start, now, done, lasts_s = (
+        hand_over, now, done, lasts_s = (
             self.moments[0],
             self.moments[-1],
             len(self.steps) - 1,
             spoken_s(action.text or ""),
         )
         for says in self.unsaid:
-            if 0 < says.over_s < lasts_s and says.is_due(start, now, done):
+            if 0 < says.over_s < lasts_s and says.is_due(hand_over, now, done):
                 self.unsaid = tuple(each for each in self.unsaid if each is not says)
                 self.remarks += (says.text,)
                 return Feedback(FeedbackCode.OK, TALKED_OVER), says.over_s + spoken_s(says.text), (says.text,)
         return None
 
     def _remarks(self) -> tuple[str, ...]:
-        start, now, steps = self.moments[0], self.moments[-1], len(self.steps)
-        due = tuple(says for says in self.unsaid if not says.over_s and says.is_due(start, now, steps))
+        hand_over, now, steps = self.moments[0], self.moments[-1], len(self.steps)
+        due = tuple(says for says in self.unsaid if not says.over_s and says.is_due(hand_over, now, steps))
         self.unsaid = tuple(says for says in self.unsaid if says not in due)
         return tuple(says.text for says in due)
 

@@ -102,7 +102,6 @@ def mend(root: ET.Element, *, left_hand: bool) -> None:
 
     Args:
         root: its file; changed in place.
-        left_hand: whether traffic keeps left.
     """
     header = root.find("header")
     assert header is not None

@@ -34,7 +34,6 @@ class LimitedProcesses:
 
         Args:
             path: file or folder of strangers.
-            count: number of processes.
             cost: what one call may take; by default what a bundle may.
         """
         self._path = path

@@ -39,7 +39,6 @@ def binding(road: RoadHere, default: AppliedRule | None, reduced: Sequence[Appli
     A sign is lowered only by rules that also lower signs (``caps``). None if no limit is known or there is none.
 
     Args:
-        road: the road, with its sign.
         default: the legal limit for it, if it is certain.
         reduced: lower limits under conditions.
     """

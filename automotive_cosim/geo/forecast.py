@@ -105,7 +105,6 @@ def drawn_weather(driving: DrivingState, departure: datetime, seed: int) -> tupl
 
     Args:
         departure: when it begins, zone-aware.
-        seed: seed of the draw.
 
     Raises ScenarioError: the network has no projection."""
     if driving.lon_deg is None or driving.lat_deg is None:

@@ -87,7 +87,6 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
     """Answers a query at the last instant of ``drive``.
 
     Args:
-        text: the question, in any words.
         drive: the drive so far in chronological order, back to the last fix; at least one instant.
         with_position: whether it may say where the car is.
         roads: the map for dead reckoning, if the car has one.

@@ -49,7 +49,6 @@ def quiet(feedback: Feedback, name: str, cockpit: Cockpit) -> Feedback:
 
     Args:
         feedback: as the cockpit gives it.
-        name: of the control, if any.
         cockpit: whose language it is told in.
     """
     outcome = _OUTCOMES.get(feedback.code)

@@ -27,7 +27,6 @@ def observe(
     """An agent's observation of the present moment.
 
     Args:
-        goal: what the driver said.
         hand_over_s: simulation time at which the agent took over.
         elements: the accessibility elements of the present screen.
         feedback: the result of the last action.

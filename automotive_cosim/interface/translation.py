@@ -30,9 +30,6 @@ from automotive_cosim.interface.functions import action_of
 def actions_of(command: Command, state: State) -> tuple[Action, ...] | None:
     """The calls that do what a command does.
 
-    Args:
-        state: the car's state just before.
-
     Returns:
         The actions, several for a command of several signals, none for a draft; None if no function does it.
     """

@@ -68,7 +68,6 @@ def for_netconvert(
 
     Args:
         tags: the way's.
-        may: the directions open to cars.
         counts: the lanes that netconvert is told of, with the way's nodes and against them.
     """
     told: dict[str, str] = {}

@@ -34,8 +34,6 @@ def assumed_sign(tags: Mapping[str, str], atlas: Atlas, place: Place, *, built_u
 
     Args:
         tags: the way's, with ``highway``; a zone among them names the place whose law applies.
-        atlas: the rules of every place.
-        place: the way's place.
         built_up: whether it lies in a town or village.
     """
     zone = next(zones_of(tags), None)

@@ -86,12 +86,9 @@ def draw(
     """Draws trips between roads of which each can be reached from the other.
 
     Args:
-        built: the imported network.
-        scratch: a folder for intermediate files.
         density_per_km: vehicles per kilometre of lane at a time if all drove freely. Unlike the number of
             departures, this measures how full a network is, whatever its size.
         duration_s: departures are spread evenly over this.
-        rng: source of all randomness.
 
     Raises UserError: the requested traffic is less than one vehicle, or no trip can be driven."""
     ends = _Ends(built)
@@ -216,7 +213,6 @@ def fastest_ways(
 
     Args:
         ends: first and last edge of each route.
-        scratch: a folder for intermediate files.
 
     Raises UserError: duarouter refuses the network."""
     asked, routed = scratch / "asked.trips.xml", scratch / "routed.rou.xml"

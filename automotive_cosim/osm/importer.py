@@ -75,8 +75,6 @@ def import_map(
     Args:
         source: ``.osm``, ``.osm.gz``, ``.osm.bz2``, ``.osm.pbf`` or Overpass JSON, whatever it is called.
         out: the folder to create, completely or not at all.
-        options: the user's options.
-        on_progress: called with the current activity.
 
     Raises:
         UserError: the extract or an option cannot be used, or ``out`` cannot be written.

@@ -113,10 +113,7 @@ def convert(
 
     Args:
         roads: its roads, by OSM way.
-        target: the file to create.
         country: ISO 3166-1 code, which decides the driving side.
-        scratch: a folder for intermediate files.
-        tell: called with the current activity.
 
     Raises:
         UserError: netconvert refuses the map, or nothing drivable remains.

@@ -117,8 +117,6 @@ def download(
         endpoint: URL of an Overpass API's ``interpreter``.
         target: the file to create; it must not exist.
         limits: limits of time, attempts and size.
-        tell: called with the current activity.
-        sleep: called to pause.
 
     Raises UserError: the endpoint, the area or the target cannot be used, or the server returns no map."""
     limits = limits or DownloadLimits()

@@ -37,9 +37,6 @@ class _Lanes:
 def open_traps(text: str, links: Links) -> tuple[str, tuple[str, ...]]:
     """Opens the lanes between lanes for cars that trap cars.
 
-    Args:
-        text: a SUMO network.
-
     Returns:
         The network, and the edges on which lanes were opened.
     """

@@ -68,12 +68,7 @@ class Joints:
     """The pieces of a map as netconvert splits them: where they meet one another, and at signals."""
 
     def __init__(self, pieces: Sequence[Piece], may: Sequence[Directions], nodes: Mapping[int, Node]) -> None:
-        """Counts how often each node is used.
-
-        Args:
-            pieces: the roads, cut at barriers.
-            nodes: the map's.
-        """
+        """Counts how often each node is used."""
         self.pieces, self.may, self.nodes = pieces, may, nodes
         self.at: dict[int, list[tuple[int, int]]] = {}
         """The pieces that have a node, and where."""
@@ -289,11 +284,7 @@ def patches(signs: MappedSigns, first_number: int) -> dict[str, str]:
 
 def followed(signs: MappedSigns, joints: Joints, links: Links, goals: Mapping[str, str]) -> dict[str, str]:
     """The edges of a built network at whose end cars yield as a sign says, or are to stop, and its kind; the other
-    signs are left out.
-
-    Args:
-        links: the network's connections.
-    """
+    signs are left out."""
     edges: dict[str, str] = {}
     for approach, (kind, nodes) in signs.approaches.items():
         edge = joints.edge_id(approach)
@@ -337,7 +328,6 @@ def dark(joints: Joints, links: Links, goals: Mapping[str, str]) -> Iterator[int
     between junctions, as at crossings on foot, which netconvert discards. Those within a junction are part of it.
 
     Args:
-        links: the network's connections.
         goals: the junction at the end of each of its edges.
     """
     for ref in filter(joints.has_signal, joints.at):

@@ -31,8 +31,7 @@ from automotive_cosim.proof.hand_over import Ground
 from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.coverage import is_outdated
 from automotive_cosim.run.difficulty import RECORD, Difficulties, Difficulty, Outcomes, read, write
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.rows import EpisodeRow, read_trials
 from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE

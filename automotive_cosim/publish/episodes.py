@@ -23,16 +23,14 @@ from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
 from automotive_cosim.run.coverage import is_outdated
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import IN_RESULT, EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.figures import alerts, driver_load, pixel_taps, questioned
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, PartsHeld, TrialRow
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.tasking.dialogue import dialogue, is_lost, questions
 from automotive_cosim.tasking.instance import Instance, phrased
@@ -79,7 +77,6 @@ def check_trial(folder: Path, job: TrialSetup, row: TrialRow) -> tuple[Problem, 
 
     Args:
         folder: an evaluation's or an unpacked bundle's.
-        job: the trial in the plan.
     """
     try:
         if large := _too_large(folder, job):
@@ -158,7 +155,7 @@ def _judged_problems(folder: Path, job: EpisodeSetup, row: EpisodeRow, told: Jso
     yield from _step_problems(file, steps, judged, job.conditions.hear)
     source = judged_file(folder, row.id).relative_to(folder).as_posix()
     verdict = judged_again(row, judged)
-    start, end = judged.trace[0], judged.trace[-1]
+    hand_over, end = judged.trace[0], judged.trace[-1]
     prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]
     seen = _steps(steps, judged)
     load, taps = driver_load(seen), pixel_taps(seen)
@@ -169,12 +166,12 @@ def _judged_problems(folder: Path, job: EpisodeSetup, row: EpisodeRow, told: Jso
         "goal_s": verdict.goal_s,
         "reason_fits": verdict.reason_fits,
         "parameters": {name: plain(value) for name, value in judged.parameters.items()},
-        "country": start.context.country,
-        "alerts": alerts(start, end),
+        "country": hand_over.context.country,
+        "alerts": alerts(hand_over, end),
         **_questions(job, row, judged),
         "steps": len(steps) - 1,
         **_malformed(row, steps),
-        "sim_seconds": round(end.time_s - start.time_s, 3),
+        "sim_seconds": round(end.time_s - hand_over.time_s, 3),
         "thought_s": round(sum(step["thought_s"] for step in steps), 1),
         "trace_sha256": sha256(steps),
         "interaction_s": load.interaction_s,

@@ -31,10 +31,8 @@ from automotive_cosim.report.stats import Rate, rate
 from automotive_cosim.report.summary import DIMENSIONS, NONE, input_of, rate_in_words
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.report.templates import render
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, TrialRow
 from automotive_cosim.run.store import cannot_write
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import minor
 
 COLUMNS = (

@@ -9,7 +9,7 @@ from typing import Any
 from automotive_cosim.episode.conditions import TABLE, Conditions
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.formats.words import shown
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import TrialRow
 
 ROWS = "episodes.jsonl"
 

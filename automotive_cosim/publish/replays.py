@@ -24,14 +24,13 @@ from automotive_cosim.models.replay import Replay
 from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.run.drive import DriveSetup, JudgedDrive
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.moments import Judged, in_its_fields, judged_file, read_judged
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rerun import Player, Recorded, compare, of_drive, played, played_together
 from automotive_cosim.run.row import as_json, steady
+from automotive_cosim.run.rows import DriveTrialRow, TrialRow
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialRun, TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
 OF_THE_AGENT = frozenset({"prompt_tokens", "calls", "tokens_in", "tokens_out", "cost_usd", "end"})
@@ -90,11 +89,8 @@ def replay_fleet(
 
     Args:
         cars: all of the fleet.
-        rows: theirs, by id.
 
-    Raises:
-        CosimError: it cannot be replayed.
-    """
+    Raises CosimError: it cannot be replayed."""
     recorders = [Recorder(car, None) for car in cars]
     stored = [of_drive(folder, car, rows.get(car.id)) for car in cars]
     runs = [TrialRun(car.job, car.player, (each,)) for car, each in zip(stored, recorders, strict=True)]

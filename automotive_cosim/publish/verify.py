@@ -39,11 +39,10 @@ from automotive_cosim.run.hidden import COMMITTED, commitment
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json
-from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.rows import TrialRow, read_trials
 from automotive_cosim.run.settings import HIDDEN
 from automotive_cosim.run.store import read_evaluation, trace_file
 from automotive_cosim.run.trial import TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
 from automotive_cosim.traffic.fork import Simulations
 
@@ -97,7 +96,6 @@ def verify(
         replays: how many judged episodes to drive again.
         seed: draws them; the author of the evaluation must not know it, or could leave these drives unforged.
         key: what the trials were drawn from, if they are of the hidden split.
-        workers: processes that judge.
         tell: called with the number of episodes judged so far and of all.
 
     Raises UserError: it is neither, or it cannot be read."""

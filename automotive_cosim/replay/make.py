@@ -23,8 +23,7 @@ from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, Provid
 from automotive_cosim.models.base import estimated_tokens
 from automotive_cosim.models.replay import SUFFIX, shipped, text_digest
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.trial import run_trial
+from automotive_cosim.run.trial import Shot, TrialObserver, run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 SETUP = EpisodeSetup("hvac_fan_max", scenario="grid")
@@ -69,11 +68,7 @@ class _Tells:
 
 
 def made(simulations: Simulations) -> dict[str, Json]:
-    """Every conversation, by name.
-
-    Args:
-        simulations: warm traffic.
-    """
+    """Every conversation, by name."""
     watcher = Touches()
     setup = replace(SETUP, agent="oracle", model="none")
     run_trial(setup, make_agent("oracle"), (watcher,), simulations=simulations)

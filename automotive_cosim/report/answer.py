@@ -11,7 +11,7 @@ from automotive_cosim.report import drives
 from automotive_cosim.report.results import Contestant, Results, pair_instance, pairs
 from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Interval, compare
 from automotive_cosim.report.summary import rate_of
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import EpisodeRow
 
 
 def answer(results: Results) -> str:

@@ -11,7 +11,7 @@ from automotive_cosim.report.results import Results
 from automotive_cosim.report.stats import all_pass, any_passes, clustered_mean, wilson
 from automotive_cosim.report.summary import DIMENSIONS, NONE
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.store import read_trace, trace_file
 
 ATTEMPTS = (1, 3, 5)

@@ -16,7 +16,7 @@ from automotive_cosim.drives.faults import WHY_VOID, beside, faults
 from automotive_cosim.drives.followed import followed
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Chart, Drawing
-from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.rows import DriveTrialRow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

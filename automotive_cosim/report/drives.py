@@ -29,8 +29,8 @@ from automotive_cosim.report.house_rules import house_rules
 from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, LEAST_CLUSTERS, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.fleet_record import fleets_in, read_fleet
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.store import read_trace, trace_file
 
 DRAWS = 2000
@@ -310,9 +310,7 @@ def _intervals_told(groups: dict[Contestant, list[DriveTrialRow]]) -> str:
 def fleets(folder: Path, rows: Sequence[DriveTrialRow]) -> tuple[str, dict[str, str]]:
     """The fleets whose cars were recorded: maps for the report with links, and a page for each by its file.
 
-    Raises:
-        UserError: a record is damaged.
-    """
+    Raises UserError: a record is damaged."""
     known, maps, pages = {row.id: row for row in rows}, [], {}
     for name, _ in fleets_in(folder):
         fleet = read_fleet(folder, name)

@@ -16,7 +16,7 @@ from itertools import pairwise
 from automotive_cosim.contracts import ActionType, AlertKind, FeedbackCode, GoalStatus, Json, Reason
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.rows import EpisodeRow, PartsHeld
 from automotive_cosim.tasking.moves import Do, Move, Slide, Tap, TapUntil, TypeText, Warn
 from automotive_cosim.tasking.parameters import bind
 from automotive_cosim.tasking.task import Basis, Half, Task

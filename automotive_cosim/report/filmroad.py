@@ -20,8 +20,7 @@ from automotive_cosim.contracts import GroundKind, SeenVehicle, SumoSignal
 from automotive_cosim.geo.sun import SUNSET_DEG
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.run.road import RoadRecord, Second
-from automotive_cosim.run.timeline import Sample
-from automotive_cosim.run.words import is_over
+from automotive_cosim.run.timeline import Sample, is_over
 
 METRES_PER_PIXEL = 0.3
 RADIUS = 14

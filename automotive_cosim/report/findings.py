@@ -17,8 +17,8 @@ from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.attribution import path_of, read_effects
 from automotive_cosim.run.difficulty import WonBy, level, measured
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.figures import DriveFigures
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.tasking.task import Module
 
@@ -73,7 +73,6 @@ def act_effects(folder: Path, trials: Mapping[str, str]) -> Table:
     """What each act of the trials changed of which that was measured.
 
     Args:
-        folder: the evaluation's.
         trials: their ids, with their names.
     """
     lines = tuple(

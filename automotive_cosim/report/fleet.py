@@ -40,13 +40,7 @@ def shown_fleet(
 
     Args:
         fleet: where the cars drove.
-        cars: all of them.
         kinds: what each kind on the map means: ``sooner`` is green, ``later`` amber, ``same`` grey, ``failed`` red.
-        columns: names of the cars' figures.
-        page: the page's file.
-        title: of the page.
-        about: what drove, and where.
-        note: what the figures are.
     """
     left, bottom, right, top = fleet.box_m
     drawn = {

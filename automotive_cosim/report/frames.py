@@ -19,8 +19,8 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.formats.writing import drafted
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.observer import Shot, TrialObserver
+from automotive_cosim.run.rows import EpisodeRow
+from automotive_cosim.run.trial import Shot, TrialObserver
 
 BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
 AFTER_EVERY_S = 1.0

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from automotive_cosim.report.results import Contestant
 from automotive_cosim.report.summary import rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import TrialRow
 
 NAMED = 3
 """Number of rules named for each contestant."""

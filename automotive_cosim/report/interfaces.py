@@ -9,7 +9,7 @@ from automotive_cosim.report.results import Results
 from automotive_cosim.report.stats import bracketed, clustered_mean, compare, mean
 from automotive_cosim.report.summary import NONE, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import EpisodeRow
 
 FigureOf = Callable[[EpisodeRow], float | None]
 Instances = Mapping[tuple[Hashable, ...], EpisodeRow]

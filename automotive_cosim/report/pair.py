@@ -21,7 +21,7 @@ from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.layout import ROAD as ROAD_FILE
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.geo.text import amount_of_speed
-from automotive_cosim.report.filmplot import speeds_plot
+from automotive_cosim.report.film import speeds_plot
 from automotive_cosim.report.filmroad import RoadPainter, draw_road_sign
 from automotive_cosim.report.frames import (
     AFTER,
@@ -38,8 +38,8 @@ from automotive_cosim.report.frames import (
 from automotive_cosim.report.page import PARTS, embedded
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import EMPTY, read_record
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.timeline import Sample
 
 WIDTH, HEIGHT = 1280, 1192
@@ -92,11 +92,7 @@ def screen_size() -> tuple[int, int]:
 
 
 def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
-    """Writes the film and the page into a folder that contains both records; returns the page.
-
-    Args:
-        sides: the two, left and right.
-    """
+    """Writes the film and the page into a folder that contains both records; returns the page."""
     frames = [_from_hand_over(side) for side in sides]
     film = folder / FILM
     if all(frames):

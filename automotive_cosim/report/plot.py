@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from automotive_cosim.geo.text import KM_PER_MILE
-from automotive_cosim.run.timeline import Sample, TimelineEntry
-from automotive_cosim.run.words import is_over
+from automotive_cosim.run.timeline import Sample, TimelineEntry, is_over
 
 MOST_LINES = 7
 STEPS = (10, 20, 40, 80)

@@ -16,9 +16,7 @@ from automotive_cosim.report.results import Contestant, Results, contestant, pai
 from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Rate, bracketed, compare
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.report.tables import Table
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, TrialRow
 from automotive_cosim.run.versions import minor
 
 MOST_LISTED = 30
@@ -262,38 +260,33 @@ def _points(scores: tuple[float, float]) -> str:
     return f"score {before} before, {after} after"
 
 
+WHEN = "before", "after"
+
+
 def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
     """A summary for a pull request."""
     rows = []
     for each in found:
         rows.append(
-            (
-                each.outcome(allowed),
-                each.contestant.label,
-                each.unit,
-                *(f"{rate.judged} of {rate.planned}" for rate in each.rates),
-                *each.levels,
-                _difference(each.found),
-                *(str(each.count(kind)) for kind in ("lost", "won", "error")),
-            )
+            {
+                "": each.outcome(allowed),
+                "Contestant": each.contestant.label,
+                "Of": each.unit,
+                **{
+                    f"Judged {when}": f"{rate.judged} of {rate.planned}"
+                    for when, rate in zip(WHEN, each.rates, strict=True)
+                },
+                **{when.capitalize(): level for when, level in zip(WHEN, each.levels, strict=True)},
+                "Difference": _difference(each.found),
+                "Lost": str(each.count("lost")),
+                "Won": str(each.count("won")),
+                "Not judged now": str(each.count("error")),
+            }
         )
-    table = Table(
+    table = Table.of(
         "compare",
         "Success before and after",
-        (
-            "",
-            "Contestant",
-            "Of",
-            "Judged before",
-            "Judged after",
-            "Before",
-            "After",
-            "Difference",
-            "Lost",
-            "Won",
-            "Not judged now",
-        ),
-        tuple(rows),
+        rows,
         "On the episodes that were judged before, in percentage points or points of score, with 95 % intervals "
         f"over tasks or drives, from {LEAST_CLUSTERS} of them on. Drives are compared by the score of all of them "
         "together, and a drive is lost if "

@@ -12,9 +12,8 @@ from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.results import Contestant, Results, not_judged, pairs
 from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Rate, bracketed, compare, mean, rate
-from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.report.tables import Cell, Table, TableRecord, TableRow
+from automotive_cosim.run.rows import EpisodeRow, TrialRow
 from automotive_cosim.tasking.task import Dimension, Module, Subset
 from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasks import CATALOGUE
@@ -239,33 +238,28 @@ def held_out(results: Results) -> Table:
 
 def conduct(results: Results) -> Table:
     """How the car was driven and the driver kept busy."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for each in results.contestants:
         mine = [row for row in results.of(each) if row.success is not None]
         nearest = ((row.min_time_to_collision_s, row.id) for row in mine if row.min_time_to_collision_s is not None)
         least = min(nearest, key=itemgetter(0), default=None)
         rows.append(
-            (
-                each.label,
-                _mean_cell(mine, 3, lambda row: row.speed_compliance),
-                Cell(NONE) if least is None else Cell(f"{least[0]:.1f}", (least[1],)),
-                _mean_cell(mine, 1, lambda row: row.interaction_s),
-                rate_cell(mine, of=lambda row: row.within_guideline),
-            )
+            {
+                "Contestant": each.label,
+                "Speed-limit compliance": _mean_cell(mine, 3, lambda row: row.speed_compliance),
+                "Minimum time to collision, s": Cell(NONE)
+                if least is None
+                else Cell(f"{least[0]:.1f}", (least[1],)),
+                "Driver's interaction, s": _mean_cell(mine, 1, lambda row: row.interaction_s),
+                "Within 2 s / 12 s": rate_cell(mine, of=lambda row: row.within_guideline),
+            }
         )
-    columns = (
-        "Contestant",
-        "Speed-limit compliance",
-        "Minimum time to collision, s",
-        "Driver's interaction, s",
-        "Within 2 s / 12 s",
-    )
     note = (
         "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 minus "
         "the mean overspeed divided by 2.23 m/s (nuPlan). Interaction and reading while moving are compared with "
         "NHTSA's limits of 2 s and 12 s."
     )
-    return Table("conduct", "Drive and driver", columns, tuple(rows), note)
+    return Table.of("conduct", "Drive and driver", rows, note)
 
 
 def questions(results: Results) -> Table:

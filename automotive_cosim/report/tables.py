@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from automotive_cosim.formats.csvs import csv_text
@@ -21,6 +21,8 @@ class Cell:
 
 
 TableRow = tuple[Cell | str, ...]
+TableRecord = Mapping[str, Cell | str]
+"""A row by the headings of its cells."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +40,14 @@ class Table:
     def __post_init__(self) -> None:
         if any(len(row) != len(self.columns) for row in self.rows):
             raise ValueError(f"table {self.name!r} has a row that is not {len(self.columns)} wide")
+
+    @classmethod
+    def of(cls, name: str, title: str, records: Iterable[TableRecord], note: str = "", heads: int = 1) -> Table:
+        """A table of rows that have the same headings; without a row it has no column either."""
+        rows = list(records)
+        return cls(
+            name, title, tuple(rows[0]) if rows else (), tuple(tuple(row.values()) for row in rows), note, heads
+        )
 
     def markdown(self) -> str:
         """The table in Markdown, under its title."""

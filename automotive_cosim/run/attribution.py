@@ -116,7 +116,6 @@ def culprit(effects: Sequence[ActEffect], kinds: Collection[str] = ()) -> str:
     """The act, or the missing act, that made a trial fail, in words; empty if none is known.
 
     Args:
-        effects: of its acts.
         kinds: of a drive, kinds of events; what became of others is told only if nothing of these is known.
     """
     found = [each for each in effects if each.verdict.startswith("no success") or (each.points or 0.0) < 0]

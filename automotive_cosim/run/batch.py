@@ -28,12 +28,11 @@ from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue, SimulationKey
 from automotive_cosim.run.row import JobRow, from_json
-from automotive_cosim.run.rows import kind_of
+from automotive_cosim.run.rows import TrialRow, kind_of
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import RowKind, Store, cannot_write, opened
 from automotive_cosim.run.time_left import JobTurn, Pace
 from automotive_cosim.run.trial import TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__, NoRoomError.__name__})
 """Errors that are certain to recur, so retrying is useless."""
@@ -152,7 +151,6 @@ def run_plan(
         folder: results folder, new or to be resumed.
         executor: where to run it; the results do not depend on it.
         retries: how many times a trial is retried after an infrastructure error before the error is recorded.
-        pictures: which screenshots to keep.
         budget: what it may spend on its models, with all earlier starts. Once it is spent, the rest is not run.
         tell: called at the start, after every trial, and in between if that takes long.
 

@@ -8,11 +8,9 @@ from dataclasses import dataclass, replace
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, TrialRow
 from automotive_cosim.run.trial import TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasks import CATALOGUE
 

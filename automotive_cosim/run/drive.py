@@ -22,10 +22,9 @@ from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.trace import digests, plain
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.moments import JudgeInput
+from automotive_cosim.run.rows import DriveTrialRow, TrialRow
 from automotive_cosim.run.trial import NO_MODEL, Answers, Limits, TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.sets import Split
 from automotive_cosim.tasking.split import split_of_seed
 from automotive_cosim.traffic.fork import Simulations

@@ -25,7 +25,6 @@ from automotive_cosim.geo.reckoning import reckon
 from automotive_cosim.interface.trace import Step
 from automotive_cosim.measures.exposure import exposure
 from automotive_cosim.measures.following import following_figures
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.figures import (
     DriverLoad,
     alerts,
@@ -37,9 +36,9 @@ from automotive_cosim.run.figures import (
 )
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.rows import EpisodeRow, PartsHeld, TrialRow
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.run.trial import Answers, TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.policy import Breach
@@ -189,13 +188,13 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
         row = replace(self.planned(), end=end, **answers.costs)
         if session is None:
             return replace(row, scenario=open_scenario(self.in_scenario).name)
-        verdict, start = session.verdict, session.moments[0]
+        verdict, hand_over = session.verdict, session.moments[0]
         row = replace(
             row,
             scenario=session.scenario.name,
             parameters=dict(session.instance.parameters),
             traffic_seed=session.traffic_seed,
-            country=start.context.country,
+            country=hand_over.context.country,
             agent_error=session.failure,
             steps=len(session.steps) - 1,
             malformed=len(session.malformed),
@@ -220,7 +219,7 @@ class EpisodeSetup(EpisodeSpec, TrialSetup):  # pyright: ignore[reportIncompatib
         measured = following_figures(states_of(driven))
         return replace(
             row,
-            alerts=alerts(start, session.moments[-1]),
+            alerts=alerts(hand_over, session.moments[-1]),
             **questioned(session.questions),
             speed_compliance=compliance(driven),
             min_time_to_collision_s=measured.min_ttc_s,

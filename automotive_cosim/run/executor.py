@@ -1,17 +1,22 @@
-"""Protocols of executors, which run jobs in processes of this machine or in actors of a Ray cluster."""
+"""Jobs, and the protocols of executors, which run them in processes of this machine or in actors of a Ray cluster.
+
+A worker tells with ``telling`` what it is doing with its job, whose first minutes are the traffic's and not the
+agent's; elsewhere nobody is told.
+"""
 
 from __future__ import annotations
 
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.budget import MeterHandle, Spent
-from automotive_cosim.run.phase import JobPhase
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
 
@@ -163,11 +168,7 @@ class Executor(Protocol):
     """Makes workers and waits for them; a context manager that ends whatever it has started itself."""
 
     def metered(self, budget: Budget, before: Spent) -> AbstractContextManager[MeterHandle]:
-        """A meter that all its workers can use.
-
-        Args:
-            budget: what the evaluation may spend.
-        """
+        """A meter that all its workers can use."""
         ...
 
     @property
@@ -191,3 +192,63 @@ class Executor(Protocol):
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
         """The handles that are ready; empty after the timeout."""
         ...
+
+
+EVERY_S = 1.0
+"""Wall time between two amounts of the same phase."""
+
+
+@dataclass(frozen=True, slots=True)
+class JobPhase:
+    """How far a job is."""
+
+    words: str = ""
+    """What is being done for it; empty if that is not told."""
+    is_warm_up: bool = False
+    """Whether that is done once for all jobs of its simulation."""
+    share: float | None = None
+    """How much of the warm-up is done, or else of the rest of the job, 0 to 1; None if that is not known."""
+
+
+_TELL: ContextVar[Callable[[str, str, bool, float | None], None]] = ContextVar(
+    "tell_phase", default=lambda what, amount, is_warm_up, share: None
+)
+
+
+def doing(what: str, amount: str = "", *, is_warm_up: bool = False, share: float | None = None) -> None:
+    """Says what is being done for the job.
+
+    Args:
+        what: the phase, such as ``warming up traffic``.
+        amount: how far it is, such as ``120 of 600 s``.
+    """
+    _TELL.get()(what, amount, is_warm_up, share)
+
+
+@contextmanager
+def telling(tell: Callable[[JobPhase], None]) -> Iterator[None]:
+    """Hands on every new phase, and the amounts and shares of one not more often than ``EVERY_S``."""
+    said, said_s = "", 0.0
+
+    def hand_on(what: str, amount: str, is_warm_up: bool, share: float | None) -> None:
+        nonlocal said, said_s
+        now_s = time.monotonic()
+        if what != said or ((amount or share is not None) and now_s - said_s >= EVERY_S):
+            said, said_s = what, now_s
+            tell(JobPhase(", ".join(filter(None, (what, amount))), is_warm_up, share))
+
+    token = _TELL.set(hand_on)
+    try:
+        yield
+    finally:
+        _TELL.reset(token)
+
+
+def warming_up(done_s: float, total_s: float) -> None:
+    """Says how far the warm-up of the traffic is, in simulated seconds."""
+    doing(
+        "warming up traffic",
+        f"{done_s:.0f} of {total_s:.0f} s",
+        is_warm_up=True,
+        share=done_s / total_s if total_s else 1.0,
+    )

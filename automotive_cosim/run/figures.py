@@ -61,11 +61,11 @@ def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
         moments: since the hand-over, in order, at least one.
         until_s: simulation time up to which it is measured; the last tick of a baseline run may lie beyond it.
     """
-    start, end = moments[0], moments[-1]
+    hand_over, end = moments[0], moments[-1]
     states = [state for state in states_of(moments) if state.time_s <= until_s + TOLERANCE_S]
     levels_pct = [moment.signals[ENERGY.LEVEL.path] for moment in moments]
     level_pct = float(np.interp(until_s, [moment.time_s for moment in moments], levels_pct))
-    passed_s = end.time_s - start.time_s
+    passed_s = end.time_s - hand_over.time_s
     return DriveFigures(
         overspeed_m=round(overspeed(moments, until_s)[0], 3),
         min_time_to_collision_s=nearest_s(states),
@@ -208,6 +208,6 @@ def questioned(questions: Sequence[Question]) -> dict[str, Any]:
     }
 
 
-def alerts(start: Moment, end: Moment) -> int:
+def alerts(hand_over: Moment, end: Moment) -> int:
     """Alerts that the agent gave between two moments of its drive."""
-    return len(end.commands["alerts"]) - len(start.commands["alerts"])
+    return len(end.commands["alerts"]) - len(hand_over.commands["alerts"])

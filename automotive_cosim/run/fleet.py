@@ -19,9 +19,8 @@ from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import InfrastructureError, NoRoomError
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.fleet_record import EVERY_S, FAILS, FleetRecord
-from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.trial import TrialRun
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import TrialRow
+from automotive_cosim.run.trial import Shot, TrialObserver, TrialRun
 from automotive_cosim.traffic.fork import RemoteRoad, RemoteTraffic, Simulations
 from automotive_cosim.traffic.running import seen
 
@@ -49,16 +48,13 @@ def run_fleet(
     Args:
         drives: ``DriveSetup.cars`` of the fleet.
         runs: who acts in each, and who observes.
-        simulations: warm simulations to use.
         folder: where to record how all cars drive (``FleetRecord``); None does not.
         wall_s: wall seconds from each departure after which that drive is cut off.
 
     Returns:
         The rows of all cars.
 
-    Raises:
-        UserError: something in the trials does not exist or is invalid.
-    """
+    Raises UserError: something in the trials does not exist or is invalid."""
     error: InfrastructureError = NoRoomError("no gap opened for it while others of its fleet drove")
     with ExitStack() as ends:
         fleet = _Running(drives, runs, simulations, folder, wall_s, ends)

@@ -44,7 +44,6 @@ class FleetRecord:
         Args:
             folder: of all results.
             name: of the fleet, for its folder below ``live``.
-            road: the traffic.
             shapes: the whole network.
             look: gives where the cars are.
             about: what is run, and by SUMO's ids under ``cars`` the trials of cars that have one.
@@ -108,9 +107,7 @@ def fleets_in(folder: Path) -> Iterator[tuple[str, bool]]:
 def read_fleet(folder: Path, name: str) -> DrivenFleet | None:
     """A fleet's cars; None if they were not recorded.
 
-    Raises:
-        UserError: the file is damaged.
-    """
+    Raises UserError: the file is damaged."""
     path = folder / LIVE / name / ROAD
     if not path.is_file():
         return None

@@ -17,9 +17,9 @@ from automotive_cosim.models.base import CHARACTERS_PER_TOKEN
 from automotive_cosim.models.remote import Settings
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.rows import TrialRow
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.trial import TrialSetup, warm_up_s
-from automotive_cosim.run.trial_row import TrialRow
 
 KNOWN_FROM = 3
 """Trials of a contestant from which its own figures are taken."""

@@ -35,8 +35,8 @@ from automotive_cosim.drives.events import DriveAct
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.specification import ROUNDING_S
 from automotive_cosim.errors import InfrastructureError
-from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.rerun import Player, Recorded, compare, played
+from automotive_cosim.run.trial import Shot, TrialObserver
 from automotive_cosim.tasking.dialogue import is_lost
 from automotive_cosim.traffic.chance import SEED_RANGE
 from automotive_cosim.traffic.fork import Simulations

@@ -18,8 +18,7 @@ from typing import Any, Generic
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
 from automotive_cosim.run.budget import Meter, MeterHandle, Spent
-from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
-from automotive_cosim.run.phase import JobPhase
+from automotive_cosim.run.executor import CannotWrite, J, JobPhase, LostError, Opener, R, Runner
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.store import keep_files, stamp
 from automotive_cosim.tasking.own_files import VARIABLE

@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any, Generic
 
 from automotive_cosim.agents.cleanup import children, end_all, strangers, take_orphans
 from automotive_cosim.run.budget import Meter, MeterHandle, Spent, served
-from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner, Worker
-from automotive_cosim.run.phase import JobPhase, telling
+from automotive_cosim.run.executor import CannotWrite, J, JobPhase, LostError, Opener, R, Runner, Worker, telling
 from automotive_cosim.run.settings import Budget
 
 if TYPE_CHECKING:

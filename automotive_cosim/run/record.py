@@ -44,12 +44,11 @@ from automotive_cosim.formats.writing import (
 from automotive_cosim.interface.trace import STATES, digests
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.moments import JudgeInput, write_judged
-from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.rows import TrialRow
 from automotive_cosim.run.store import write_trace
-from automotive_cosim.run.trial import TrialSetup
+from automotive_cosim.run.trial import Shot, TrialObserver, TrialSetup
 from automotive_cosim.run.trial_folder import target
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import STAMPED, installed
 
 VIEW_QUALITY = 80

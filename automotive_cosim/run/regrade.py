@@ -10,10 +10,8 @@ from automotive_cosim.drives.score import Score
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.limited import LimitedProcesses
 from automotive_cosim.run.drive import JudgedDrive
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.moments import Judged, read_judged
-from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, PartsHeld, read_trials
 from automotive_cosim.run.store import read_evaluation
 from automotive_cosim.tasking.binding import UnmetNeedError, bound
 from automotive_cosim.tasking.instance import Instance

@@ -32,19 +32,16 @@ from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import canonical, digests
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup, read_setup
 from automotive_cosim.run.fleet import run_fleet
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.record import Recorder
-from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.rows import DriveTrialRow, TrialRow, read_trials
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.run.store import read_evaluation, read_trace
-from automotive_cosim.run.trial import TrialRun, TrialSetup, run_trial
+from automotive_cosim.run.trial import TrialObserver, TrialRun, TrialSetup, run_trial
 from automotive_cosim.run.trial_folder import is_trial, read_steps, read_trial
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations
 
@@ -100,9 +97,7 @@ def rerun(
     Args:
         observers: makes those that are notified of everything as it happens.
 
-    Raises:
-        InfrastructureError: the simulation failed.
-    """
+    Raises InfrastructureError: the simulation failed."""
     stored = recorded(folder, trial)
     _, again = played(stored, observers=observers(stored.job))
     return compare(stored.steps, [line for line in again.lines if "step" in line])
@@ -221,7 +216,6 @@ def played(
     and what an evaluation would keep of it.
 
     Args:
-        stored: the trial.
         simulations: warm simulations to use; by default its own.
         observers: notified of everything as it happens.
         player: used instead of a player of its steps.

@@ -32,9 +32,9 @@ from automotive_cosim.formats.layout import ROAD
 from automotive_cosim.formats.writing import growing, make_folder
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
-from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.road import FORMAT, SeenColumns
-from automotive_cosim.run.words import limit_kmh
+from automotive_cosim.run.timeline import limit_kmh
+from automotive_cosim.run.trial import Shot, TrialObserver
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
 
 EVERYWHERE_M = 1e9
@@ -132,8 +132,6 @@ class RoadWriter:
 
         Args:
             shapes: lanes, junctions and ground of the whole network.
-            network: the same for maps.
-            about: what is run, by name.
             begin_s: simulation time from which the file counts.
         """
         self._raw = BufferedWriter(growing(path, anew=True))

@@ -130,7 +130,6 @@ def opened(
 
     Args:
         plan: the plan; a folder that was started with a different one is refused.
-        parts: folders in it.
         planned: how many jobs the plan has, for the manifest.
         grows: the plan may differ from the earlier one, for runs that are not known in advance; see ``replan``.
 

@@ -11,30 +11,31 @@ from abc import abstractmethod
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import inf
 from pathlib import Path
 from typing import Annotated, Any, Protocol, runtime_checkable
 
+import numpy as np
+import numpy.typing as npt
 from annotated_types import Ge, Gt, Le
 
-from automotive_cosim.agents import Agent, Learner, Privileged, Stage, Thinker
+from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
 from automotive_cosim.contracts import Element, Json
 from automotive_cosim.contracts.given import Clock, GeoInput
 from automotive_cosim.drives.specification import MOST_STEPS
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.observer import Observer, Observers
-from automotive_cosim.episode.session import JudgedSession, TakesTime, driven, playing
+from automotive_cosim.episode.session import JudgedSession, Session, TakesTime, driven, playing
 from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import InfrastructureError, TrafficError
-from automotive_cosim.interface.trace import canonical
+from automotive_cosim.interface.trace import Step, canonical
 from automotive_cosim.models import ModelReply
 from automotive_cosim.run.executor import Job
 from automotive_cosim.run.moments import JudgeInput
-from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.outside import EPISODE_S, STEP_S
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import TrialRow
 from automotive_cosim.tasking.sets import Split, Suite
 from automotive_cosim.traffic.fork import Simulations
 
@@ -327,6 +328,43 @@ def digest(value: object) -> str:
     return hashlib.sha256(canonical(value)).hexdigest()
 
 
+@dataclass(frozen=True)
+class Shot:
+    """One step as observers see it."""
+
+    session: Session
+    step: Step
+    seen: tuple[Element, ...] = ()
+    """The elements the agent saw when it acted."""
+    stages: tuple[Stage, ...] = ()
+    """The stages of the agent's reasoning, for agents that report them."""
+
+    @cached_property
+    def thought(self) -> str:
+        """The agent's own reason for the action, or what was wrong with its answer; empty if it gives none."""
+        said = {stage.name: stage.text for stage in self.stages}
+        return said.get(StageName.INTERPRET, said.get(StageName.ACT, ""))
+
+    @cached_property
+    def screenshot(self) -> npt.NDArray[np.uint8]:
+        """The cockpit after the step, (height, width, 3); drawn when an observer first asks for it, which must be
+        before the next step."""
+        return self.session.screenshot()
+
+
+class TrialObserver(Observer):
+    """Observes trials: their sessions and what comes of them."""
+
+    def begun(self, session: Any, shot: Shot) -> None:
+        """The agent takes over: at the hand-over of a task, or when a drive departs."""
+
+    def stepped(self, shot: Shot) -> None:
+        """The agent has acted."""
+
+    def finished(self, row: Any, told: Any) -> None:
+        """The trial is over, or was broken off: its row, and what else its trace tells (``TrialSetup.told``)."""
+
+
 def run_trial(
     trial: TrialSetup,
     agent: Agent,
@@ -395,9 +433,7 @@ class TrialRun:
         Args:
             observers: more of them, from now on.
 
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
+        Raises TrafficError: the traffic simulation failed."""
         self._session = session
         self._observers += observers
         try:

@@ -8,23 +8,24 @@ from dataclasses import replace
 from pathlib import Path
 
 from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.own_prompt import instructions
+from automotive_cosim.episode.session import Session
 from automotive_cosim.formats.layout import PICTURES
 from automotive_cosim.formats.writing import beneath
 from automotive_cosim.run.budget import Metered, MeterHandle
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import FleetRow
-from automotive_cosim.run.executor import Runner, failed_by
+from automotive_cosim.run.executor import Runner, doing, failed_by, warming_up
 from automotive_cosim.run.fleet import run_fleet
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
-from automotive_cosim.run.phase import PhaseObserver
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.rows import FleetRow, TrialRow
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.trial import Limits, TrialRun, TrialSetup, run_trial
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.trial import Limits, Shot, TrialObserver, TrialRun, TrialSetup, run_trial
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.fork import Simulations
 
 WARM = 2
@@ -53,9 +54,7 @@ def run_job(
 ) -> TrialRow:
     """Runs one trial with its agent, as ``run_with`` does, or all drives of a fleet, each with its own.
 
-    Raises:
-        OSError: trace or pictures cannot be written.
-    """
+    Raises OSError: trace or pictures cannot be written."""
     agents = [agent_of(car, fork_server, meter) for car in job.cars]
     if not isinstance(job, DriveSetup) or not job.settings.cars:
         return run_with(agents[0], job, folder, pictures, simulations)
@@ -87,14 +86,7 @@ def run_with(
 ) -> TrialRow:
     """Runs one trial, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
-    Args:
-        folder: the evaluation's.
-        simulations: warm simulations to use.
-        observers: notified before anything is kept.
-
-    Raises:
-        OSError: trace or pictures cannot be written.
-    """
+    Raises OSError: trace or pictures cannot be written."""
     try:
         with _recorded(job, folder, pictures, observers) as (recorder, everyone), agent as acting:
             row = run_trial(job, acting, everyone, simulations=simulations)
@@ -103,6 +95,41 @@ def run_with(
         return ended
     _keep(recorder, row, folder, pictures)
     return row
+
+
+class PhaseObserver(TrialObserver):
+    """Tells the phases of a trial, the agent's by its steps or, on a drive, by the time."""
+
+    _session: Session | None = None
+
+    def loading(self, scenario: Scenario) -> None:
+        doing(f"loading {scenario.name}", is_warm_up=True)
+
+    def warming(self, scenario: str, done_s: float, total_s: float) -> None:
+        warming_up(done_s, total_s)
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        if self._session is None:
+            doing("driving to the hand-over")
+        elif self._watches and (most_s := self._session.setup.max_sim_s):
+            done_s = min(self._session.seconds, most_s)
+            doing("agent on watch", f"{done_s:.0f} of {most_s:.0f} s", share=done_s / most_s)
+
+    def begun(self, session: Session, shot: Shot) -> None:
+        self._session = session
+        if self._watches:
+            doing("agent on watch", share=0.0)
+        else:
+            doing("agent at work", "step 0")
+
+    def stepped(self, shot: Shot) -> None:
+        if not self._watches:
+            doing("agent at work", f"step {len(shot.session.steps) - 1}")
+
+    @property
+    def _watches(self) -> bool:
+        """Whether it is a drive, of which the time says more than the step."""
+        return self._session is not None and self._session.observation.on_watch
 
 
 @contextmanager

@@ -49,9 +49,7 @@ def why_not(spec: DriveSpec, kinds: Collection[str], simulations: Simulations) -
     It is driven up to the first deadline, without screens and observations.
 
     Args:
-        spec: the drive.
         kinds: of events; all if it is empty.
-        simulations: warm traffic, shared with others.
     """
     tracker = Tracker({name: KINDS[name] for name in kinds or KINDS})
     try:

@@ -117,29 +117,20 @@ def _failures(found: Hunt) -> Table:
         count = sum(tried.outcome.failed and each.covers(found.space, tried.point) for tried in samples)
         careful = {None: "not tried", True: "prevents it", False: "fails too"}[each.prevented]
         lines.append(
-            (
-                str(number),
-                each.words(found.space),
-                each.why,
-                each.act or "not measured",
-                each.beside or "no neighbour found",
-                careful,
-                str(count),
-            )
+            {
+                "No.": str(number),
+                "Fails with": each.words(found.space),
+                "What is missing": each.why,
+                "Act, or missing act": each.act or "not measured",
+                "Beside it": each.beside or "no neighbour found",
+                "A careful watcher": careful,
+                "Combinations it explains": str(count),
+            }
         )
-    return Table(
+    return Table.of(
         "failures",
         "Minimal failures",
-        (
-            "No.",
-            "Fails with",
-            "What is missing",
-            "Act, or missing act",
-            "Beside it",
-            "A careful watcher",
-            "Combinations it explains",
-        ),
-        tuple(lines),
+        lines,
         f"Each failed {REPEATS} times of {REPEATS}, and what is beside it did not. Factors that "
         "are not named are nominal; numbers are bisected. "
         "The careful watcher is the reference: rule-perfect on drives, oracle on tasks. failures/NN.toml replays "

@@ -154,8 +154,6 @@ def hunt(
     """Searches a space.
 
     Args:
-        evaluate: runs a point.
-        sampler: chooses the points.
         budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
             reductions come in addition: about thirty runs a failure.
         most_failures: how many failures are reduced; those that one of them explains are not.

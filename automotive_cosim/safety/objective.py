@@ -7,9 +7,7 @@ from dataclasses import dataclass
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.judge import EventOutcome, JudgedEvent, Worth
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, PartsHeld, TrialRow
 from automotive_cosim.safety.space import FailureRule
 from automotive_cosim.tasks import CATALOGUE
 

@@ -18,11 +18,10 @@ from automotive_cosim.run.batch import Progress, is_open, run_jobs, spent_before
 from automotive_cosim.run.executor import Executor, Opener, Runner
 from automotive_cosim.run.plan import Plan, PlannedTrial
 from automotive_cosim.run.processes import Here, Processes
-from automotive_cosim.run.rows import kind_of
+from automotive_cosim.run.rows import TrialRow, kind_of
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import Store, opened, replan
 from automotive_cosim.run.trial import TrialSetup
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.space import CONDITIONS, SETTINGS, FactorChoices, SearchPoint, Space
@@ -149,7 +148,6 @@ def trying(
 
     Args:
         plan: the agent, its model and limits.
-        folder: where the trials are kept.
         runner: runs a trial; None runs it with the agent of its name.
         executor: where trials run that do not depend on each other; it has been entered.
         budget: what may be used, with earlier starts.

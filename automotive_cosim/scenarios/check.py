@@ -82,11 +82,8 @@ def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, 
 
     Args:
         quick: whether to skip the hour of traffic.
-        tell: called with the progress.
 
-    Raises:
-        SetupError: libsumo is missing, or eclipse-sumo unless ``quick``.
-    """
+    Raises SetupError: libsumo is missing, or eclipse-sumo unless ``quick``."""
     return ScenarioProof(scenario.name, tuple(_items(scenario, quick, tell)))
 
 
@@ -202,9 +199,7 @@ def _bears(edge: Edge, sign: str, speed_mps: float | None) -> bool:
 def _sign_mps(sign: str) -> float | None:
     """The speed of a sign; None for ``none`` and ``unposted``.
 
-    Raises:
-        ScenarioError: it is not a ``maxspeed``.
-    """
+    Raises ScenarioError: it is not a ``maxspeed``."""
     if sign == UNPOSTED:
         return None
     try:

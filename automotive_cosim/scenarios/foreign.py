@@ -71,9 +71,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     Args:
         to_be_moved: whether the network is moved to another place afterwards, so it need not have one.
 
-    Raises:
-        ScenarioError: the files are missing or invalid, or no two roads are connected.
-    """
+    Raises ScenarioError: the files are missing or invalid, or no two roads are connected."""
     configuration = read_configuration(path)
     if configuration.files.keys() == {"net-file"}:
         return _as_it_is(path, to_be_moved, stamp(configuration))

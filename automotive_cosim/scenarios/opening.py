@@ -59,9 +59,7 @@ def open_scenario(
 def network_of(scenario: Scenario) -> Network:
     """The scenario's network, on its side of the road and at its place.
 
-    Raises:
-        ScenarioError: it cannot be read.
-    """
+    Raises ScenarioError: it cannot be read."""
     return placed(read_mapped(read_configuration(scenario.config)), scenario)
 
 
@@ -71,9 +69,7 @@ def own_files(name: str | Path) -> tuple[Path, ...]:
     Args:
         name: as ``open_scenario`` takes it. A shipped scenario has none: it belongs to the version.
 
-    Raises:
-        ScenarioError: it cannot be read.
-    """
+    Raises ScenarioError: it cannot be read."""
     path = _configuration(Path(name))
     described: tuple[Path, ...] = ()
     if path.is_dir() or path.name == "scenario.toml":

@@ -98,9 +98,7 @@ class Viewport:
 def draw_scenario(scenario: Scenario) -> tuple[Image.Image, tuple[str, ...]]:
     """The scenario's picture, RGB, and the street names that it lacks because no font has their script.
 
-    Raises:
-        ScenarioError: its network cannot be read, or a trip has no route through it.
-    """
+    Raises ScenarioError: its network cannot be read, or a trip has no route through it."""
     network = network_of(scenario)
     edges = tuple(network.edges.values())
     frame = Viewport.around(edges)

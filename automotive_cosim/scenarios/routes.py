@@ -42,9 +42,7 @@ def chosen_trips(network: Network, from_place: str, to_place: str) -> tuple[Trip
         from_place: an edge, a street or ``LON,LAT``; empty for any.
         to_place: an edge, a street or ``LON,LAT``; empty for any.
 
-    Raises:
-        ScenarioError: a place is not on this network, or no route leads from the one to the other.
-    """
+    Raises ScenarioError: a place is not on this network, or no route leads from the one to the other."""
     starts = edges_at(network, from_place) if from_place else ()
     goals = edges_at(network, to_place) if to_place else ()
     if not (starts and goals):
@@ -68,11 +66,8 @@ def drawn_trips(
     Args:
         starts: edges to begin on; any if empty.
         goals: edges to end on; any if empty.
-        seed: seed of the choice.
 
-    Raises:
-        ScenarioError: no two edges are connected.
-    """
+    Raises ScenarioError: no two edges are connected."""
     rng = np.random.default_rng(seed)
     roomy = [edge.edge_id for edge in network.edges.values() if edge.length_m >= ROOM_M] or list(network.edges)
     begins = list(starts) or [roomy[int(index)] for index in rng.permutation(len(roomy))[:STARTS]]
@@ -107,9 +102,7 @@ def _trip(network: Network, name: str, way_m: float, start: str, goal: str) -> T
 def edges_at(network: Network, place: str) -> tuple[str, ...]:
     """The edges that a text may mean: an edge's id, a street's name, or ``LON,LAT``.
 
-    Raises:
-        ScenarioError: it is none of them, or a position that is not on this network.
-    """
+    Raises ScenarioError: it is none of them, or a position that is not on this network."""
     if place in network.edges:
         return (place,)
     try:

@@ -1,4 +1,4 @@
-"""The streets of a network with the ids of their edges, by which incidents, measures and trips name a place."""
+"""The streets of a network and the ids of their edges, by which incidents, interventions and trips name a place."""
 
 from __future__ import annotations
 
@@ -25,9 +25,7 @@ class StreetEdges:
 def streets(scenario: Scenario) -> list[StreetEdges]:
     """The streets that are open to cars, the longest first, and at last the edges without a name.
 
-    Raises:
-        ScenarioError: the network cannot be read.
-    """
+    Raises ScenarioError: the network cannot be read."""
     found: dict[str, list[Edge]] = {}
     for edge in read_network(read_configuration(scenario.config).net).edges.values():
         found.setdefault(edge.name, []).append(edge)

@@ -34,9 +34,7 @@ MOST_COPIED_BYTES = 2**32
 def check_target(target: Path) -> None:
     """Refuses a folder that is not empty.
 
-    Raises:
-        UserError: it is not.
-    """
+    Raises UserError: it is not."""
     if target.exists() and any(target.iterdir()):
         raise UserError(f"{target} exists; give --out another folder, or delete that one")
 
@@ -57,9 +55,7 @@ def new_folder(target: Path) -> Iterator[Path]:
 def check_demand(configuration: Configuration) -> None:
     """Refuses demand that would be lost.
 
-    Raises:
-        UserError: it has stops or persons, or stands in additional files.
-    """
+    Raises UserError: it has stops or persons, or stands in additional files."""
     for option, pattern in (("route-files", NOT_TAKEN), ("additional-files", DEMAND)):
         given = configuration.files.get(option, ())
         found = {path: element for path in given if (element := _element(path, pattern))}
@@ -160,7 +156,6 @@ def _copied(configuration: Configuration, home: Path, draft: Path, folder: Path)
 
     Args:
         home: the scenario's folder; a file in it has the same place in the copy.
-        draft: the copy's folder.
 
     Returns:
         Option -> names as the copy's configuration has them, separated by commas.
@@ -192,9 +187,7 @@ def _copied(configuration: Configuration, home: Path, draft: Path, folder: Path)
 def _inside(path: Path, home: Path) -> Path:
     """The path, unless it is in a folder and a link leads it out of there.
 
-    Raises:
-        UserError: one does.
-    """
+    Raises UserError: one does."""
     if Path(os.path.normpath(path)).is_relative_to(home) and not path.resolve().is_relative_to(home.resolve()):
         raise UserError(f"{path} is a link that leads out of {home}; put the file itself there")
     return path

@@ -21,9 +21,7 @@ def read_line(text: str, kinds: Mapping[str, type[Any]], place: str) -> Any:
     Args:
         kinds: name of each kind -> the dataclass of its fields.
 
-    Raises:
-        UserError: there is no such kind or field, or a value is not valid.
-    """
+    Raises UserError: there is no such kind or field, or a value is not valid."""
     kind, *pairs = text.split() or [""]
     if kind not in kinds:
         raise UnknownNameError(f"kind in {place}", kind, kinds)

@@ -21,14 +21,12 @@ from automotive_cosim.report.hearing import can_sound, sounded, utterances
 from automotive_cosim.report.page import PARTS as VERDICT_PARTS
 from automotive_cosim.run.attribution import path_of, read_effects
 from automotive_cosim.run.coverage import unit_of
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.effect import ActEffect
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.extensions import kind_of
 from automotive_cosim.run.fleet_record import fleets_in
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.row import from_json
-from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, trace_file
 from automotive_cosim.run.trial_folder import READ, is_trial, read_steps, read_trial, trace_of
 from automotive_cosim.safety.page import PAGE
@@ -202,9 +200,7 @@ class Content:
     def study(self, name: str, part: str, *items: str) -> Json:
         """A part of a study, of those that its kind has for pages, or of an evaluation's fleets.
 
-        Raises:
-            UserError: it is not here, or cannot be read.
-        """
+        Raises UserError: it is not here, or cannot be read."""
         entry = self.records.entry(name)
         kind = kind_of(read_manifest(entry.folder)["plan"]) if entry.is_evaluation else None
         if kind is not None:

@@ -93,7 +93,6 @@ def deal(
 
     Args:
         jobs: of a plan for these people.
-        people: their code names.
         order_seed: the same seed deals the same.
     """
     halves: dict[tuple[str, str, int], list[str]] = {}

@@ -8,10 +8,9 @@ from pathlib import Path
 from automotive_cosim.contracts import Json
 from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.report.drives import OF_A_CAR, shown_car
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.fleet_record import FAILS, fleets_in, read_fleet
 from automotive_cosim.run.row import as_json
-from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.rows import DriveTrialRow, read_trials
 from automotive_cosim.run.store import read_manifest
 from automotive_cosim.serve.records import NotHereError
 
@@ -19,9 +18,7 @@ from automotive_cosim.serve.records import NotHereError
 def fleets(folder: Path) -> Json:
     """Those that have been driven, or are being driven.
 
-    Raises:
-        UserError: the folder is damaged.
-    """
+    Raises UserError: the folder is damaged."""
     manifest = read_manifest(folder)
     return {
         "name": folder.name,

@@ -32,12 +32,11 @@ from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.record import Recorder, default_folder, stamped_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.rows import TrialRow
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.trial import HUMAN, NO_MODEL, TrialSetup, run_trial
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.trial import HUMAN, NO_MODEL, Shot, TrialObserver, TrialSetup, run_trial
 from automotive_cosim.run.worker import run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
 from automotive_cosim.serve.played import (
@@ -132,8 +131,6 @@ class Game(TrialObserver):
 
         Args:
             half: ``first``, ``second``, or empty to let the seed choose.
-            seed: seed of the episode.
-            name: code name of the person.
             practice: it may be paused and slowed, and gives no row.
 
         Raises UserError: one is running, there is no such task or half, or the name is no code name."""
@@ -156,7 +153,6 @@ class Game(TrialObserver):
         """Begins a drive.
 
         Args:
-            name: code name of the person.
             practice: it may be paused and slowed, and does not count.
 
         Raises UserError: an episode is running, there is no such family, or the name is no code name."""

@@ -21,11 +21,10 @@ from automotive_cosim.episode.conditions import Conditions, with_conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.row import R
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow
 from automotive_cosim.run.store import Store, opened, read_rows, replan
 from automotive_cosim.run.trial import HUMAN, Limits
 from automotive_cosim.tasking.sets import ALL_SUITES

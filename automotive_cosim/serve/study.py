@@ -30,7 +30,7 @@ from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.formats.writing import add_line, growing
 from automotive_cosim.run.batch import kept
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.detection import PHASES, TOLD, detected, figures
 from automotive_cosim.serve.play import Game

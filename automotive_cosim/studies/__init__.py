@@ -1,7 +1,7 @@
 """Studies of traffic, a wing of its own: the package knows nothing of it (``run.extensions``).
 
 reroute      how much rerouting gains, from futures forked from identical traffic
-congestion   the delay of a network before and after a measure
+congestion   the delay of a network before and after an intervention
 days         advice from day to day until traffic settles
 equilibrium  routes on which nobody would do better alone, and routes with a lower total travel time
 calibration  a demand that carries counts

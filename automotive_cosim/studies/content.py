@@ -90,8 +90,8 @@ def load_study(folder: Path | str) -> pd.DataFrame:
     """A study of any kind as a data frame, every line with its seed; of several networks, with the network first.
 
     A line is a choice of a policy at a decision, with news of an age, at a compliance (``reroute``); the traffic
-    without a measure or with one (``congestion``); cars at a share (``adoption``); or a day of a share of advised
-    drivers (``days``).
+    without an intervention or with one (``congestion``); cars at a share (``adoption``); or a day of a share of
+    advised drivers (``days``).
 
     Raises:
         UserError: it is not a study's folder, or is damaged.

@@ -37,7 +37,6 @@ def seed_mean(values: Iterable[tuple[int, float]], seed: int = 0) -> SeedMean | 
 
     Args:
         values: (seed of the traffic, value) of each decision.
-        seed: seed of the bootstrap.
     """
     by_seed: dict[int, list[float]] = defaultdict(list)
     for cluster, value in values:

@@ -135,10 +135,10 @@ class CongestionSettings(DrivenSettings):
     """What a congestion study sets."""
 
     kind: ClassVar[str] = "congestion"
-    sets: ClassVar[tuple[str, ...]] = ("measures", "seeds")
+    sets: ClassVar[tuple[str, ...]] = ("interventions", "seeds")
 
-    measures: Annotated[tuple[str, ...], Option("measure", repeats=True)] = ()
-    """A measure to compare with none: an incident with the fields of scenario.toml (as 'closure edge=c2c3'),
+    interventions: Annotated[tuple[str, ...], Option("intervention", repeats=True)] = ()
+    """An intervention to compare with none: an incident with the fields of scenario.toml (as 'closure edge=c2c3'),
     'advice share=0.5 compliance=0.8 age_s=300' or 'signals control=static'. May be repeated."""
     minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0
     """How long to measure after the warm-up, in whole five minutes."""

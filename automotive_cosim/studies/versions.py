@@ -140,12 +140,12 @@ VersionFigures = dict[tuple[str, int], float]
 def _figures(pair: Pair) -> Iterator[tuple[str, VersionFigures, VersionFigures]]:
     first, second = pair.first, pair.second
     if isinstance(first, CongestionStudy) and isinstance(second, CongestionStudy):
-        for measure in first.measures:
+        for intervention in first.interventions:
             one, two = (
-                {("", seed): delay_h(study.plan, outcome) for seed, outcome in study.outcomes(measure)}
+                {("", seed): delay_h(study.plan, outcome) for seed, outcome in study.outcomes(intervention)}
                 for study in (first, second)
             )
-            yield f"delay, {name_of(measure)}", one, two
+            yield f"delay, {name_of(intervention)}", one, two
     elif isinstance(first, Study) and isinstance(second, Study):
         before, after = _gains(first), _gains(second)
         for name, figures in before.items():

@@ -47,9 +47,7 @@ def needs(half: Half) -> tuple[str, ...]:
 def bound(half: Half, context: GeoContext) -> str:
     """The sign or the rule on which the half rests at another place, for its verdict.
 
-    Raises:
-        UnmetNeedError: the place has none.
-    """
+    Raises UnmetNeedError: the place has none."""
     if half.basis is Basis.LAW:
         return ", ".join(_law_here(rule, context) for rule in rules_of(half))
     if _about_signs(half):
@@ -129,9 +127,7 @@ def _unit_at_home(half: Half) -> str:
 def rules_of(half: Half) -> tuple[Rule, ...]:
     """The rules of law that a half names.
 
-    Raises:
-        UnknownNameError: there is no such rule.
-    """
+    Raises UnknownNameError: there is no such rule."""
     return tuple(_rule(rule_id.strip(), shipped()) for rule_id in half.rule.split(","))
 
 

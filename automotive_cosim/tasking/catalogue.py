@@ -76,9 +76,7 @@ class Catalogue(Mapping[str, Task]):
     def add_folder(self, folder: Path) -> None:
         """Adds the tasks of every file of a folder, in the order of their names.
 
-        Raises:
-            UserError: no such folder, nothing in it, or a file that cannot be used: file, line and reason.
-        """
+        Raises UserError: no such folder, nothing in it, or a file that cannot be used: file, line and reason."""
         _enter_own(self._tasks, folder)
 
     def digest(self) -> str:

@@ -21,15 +21,15 @@ from automotive_cosim.tasking.named import ROWS, Named, Wording, keep
 
 
 class Check(Protocol):
-    """A goal: a pure predicate over the start, the present and what happened in between."""
+    """A goal: a pure predicate over the hand-over, the present and what happened in between."""
 
     @property
     def writes(self) -> frozenset[str]:
         """Keys of ``Moment.commands`` that reaching the goal necessarily changes."""
         ...
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the goal is reached. ``trace`` goes from the start to now, both included."""
+    def holds(self, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether the goal is reached. ``trace`` goes from the hand-over to now, both included."""
         ...
 
 
@@ -58,8 +58,8 @@ class NamedCheck(Named):
     def writes(self) -> frozenset[str]:
         return ROWS[self.name].writes(*self.values)
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return ROWS[self.name].holds(start, now, trace, *self.values)
+    def holds(self, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return ROWS[self.name].holds(hand_over, now, trace, *self.values)
 
 
 def _its_key(key: str, *others: object) -> frozenset[str]:
@@ -87,7 +87,7 @@ class SignalIs(_OfSignal):
 
     values: tuple[Any, ...]
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+    def holds(self, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         return now.signals[self.signal.path] in self.values
 
     def __str__(self) -> str:
@@ -95,15 +95,19 @@ class SignalIs(_OfSignal):
 
 
 @goal("{signal} raised by {by:g} or more", writes=_its_path)
-def signal_raised(start: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[float], by: float) -> bool:
-    """A numeric signal is at least ``by`` above its value at the start."""
-    return float(now.signals[signal.path]) - float(start.signals[signal.path]) >= by
+def signal_raised(
+    hand_over: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[float], by: float
+) -> bool:
+    """A numeric signal is at least ``by`` above its value at the hand-over."""
+    return float(now.signals[signal.path]) - float(hand_over.signals[signal.path]) >= by
 
 
 @goal("{signal} lowered by {by:g} or more", writes=_its_path)
-def signal_lowered(start: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[float], by: float) -> bool:
-    """A numeric signal is at least ``by`` below its value at the start."""
-    return float(start.signals[signal.path]) - float(now.signals[signal.path]) >= by
+def signal_lowered(
+    hand_over: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[float], by: float
+) -> bool:
+    """A numeric signal is at least ``by`` below its value at the hand-over."""
+    return float(hand_over.signals[signal.path]) - float(now.signals[signal.path]) >= by
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +117,7 @@ class SignalWithin(_OfSignal):
     low: float
     high: float
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+    def holds(self, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         return self.low - 1e-9 <= float(now.signals[self.signal.path]) <= self.high + 1e-9
 
     def __str__(self) -> str:
@@ -121,9 +125,9 @@ class SignalWithin(_OfSignal):
 
 
 @goal("{signal} is no longer what it was", writes=_its_path)
-def signal_changed(start: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[Any]) -> bool:
-    """A signal has any other value than at the start."""
-    return bool(now.signals[signal.path] != start.signals[signal.path])
+def signal_changed(hand_over: Moment, now: Moment, trace: Sequence[Moment], signal: Signal[Any]) -> bool:
+    """A signal has any other value than at the hand-over."""
+    return bool(now.signals[signal.path] != hand_over.signals[signal.path])
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +141,7 @@ class AppDataIs:
     def writes(self) -> frozenset[str]:
         return frozenset({self.key})
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+    def holds(self, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         return now.commands[self.key] in self.values
 
     def __str__(self) -> str:
@@ -146,30 +150,30 @@ class AppDataIs:
 
 @goal(lambda key, entry, there: f"{entry!r} {'among' if there else 'no longer among'} {key}")
 def app_data_has(
-    start: Moment, now: Moment, trace: Sequence[Moment], key: str, entry: Any, there: bool = True
+    hand_over: Moment, now: Moment, trace: Sequence[Moment], key: str, entry: Any, there: bool = True
 ) -> bool:
     """A list of the apps' data contains that entry, or no longer does; the rest of it is unchanged."""
-    before, after = start.commands[key], now.commands[key]
+    before, after = hand_over.commands[key], now.commands[key]
     same = [each for each in before if each != entry] == [each for each in after if each != entry]
     return same and (entry in after) is there
 
 
 @goal(lambda key, name, entry, there: f"{entry!r} {'among' if there else 'no longer among'} {key} {name}")
 def filed(
-    start: Moment, now: Moment, trace: Sequence[Moment], key: str, name: str, entry: Any, there: bool = True
+    hand_over: Moment, now: Moment, trace: Sequence[Moment], key: str, name: str, entry: Any, there: bool = True
 ) -> bool:
     """One of several named lists (playlists) contains that entry, or no longer does; the others are unchanged."""
-    before, after = dict(start.commands[key]), dict(now.commands[key])
+    before, after = dict(hand_over.commands[key]), dict(now.commands[key])
     was, is_now = before.pop(name, []), after.pop(name, [])
     same = [each for each in was if each != entry] == [each for each in is_now if each != entry]
     return before == after and same and (entry in is_now) is there
 
 
 @goal(lambda key, entry: f"one entry added to {key}" + ("" if entry is None else f": {entry!r}"))
-def entered(start: Moment, now: Moment, trace: Sequence[Moment], key: str, entry: Any = None) -> bool:
+def entered(hand_over: Moment, now: Moment, trace: Sequence[Moment], key: str, entry: Any = None) -> bool:
     """Exactly one entry was added to a list that only grows (messages sent, calls, payments, memos), and with
     ``entry`` it is that one. If an entry is a mapping, only the fields named in ``entry`` count."""
-    added = now.commands[key][len(start.commands[key]) :]
+    added = now.commands[key][len(hand_over.commands[key]) :]
     if len(added) != 1 or entry is None:
         return len(added) == 1
     if isinstance(entry, dict):
@@ -178,16 +182,16 @@ def entered(start: Moment, now: Moment, trace: Sequence[Moment], key: str, entry
 
 
 @goal("{signal}, as it was, added to {key}")
-def entered_of(start: Moment, now: Moment, trace: Sequence[Moment], key: str, signal: Signal[str]) -> bool:
-    """Exactly one entry was added to a list that only grows: the signal's value at the start, e.g. who rang."""
-    added = now.commands[key][len(start.commands[key]) :]
-    return bool(added == [start.signals[signal.path]])
+def entered_of(hand_over: Moment, now: Moment, trace: Sequence[Moment], key: str, signal: Signal[str]) -> bool:
+    """Exactly one entry was added to a list that only grows: the signal's value at the hand-over, e.g. who rang."""
+    added = now.commands[key][len(hand_over.commands[key]) :]
+    return bool(added == [hand_over.signals[signal.path]])
 
 
 @goal("{key} {by} higher")
-def counted(start: Moment, now: Moment, trace: Sequence[Moment], key: str, by: int = 1) -> bool:
-    """A counter (horn, washer, trip.resets) is higher than at the start by a number."""
-    return bool(now.commands[key] - start.commands[key] == by)
+def counted(hand_over: Moment, now: Moment, trace: Sequence[Moment], key: str, by: int = 1) -> bool:
+    """A counter (horn, washer, trip.resets) is higher than at the hand-over by a number."""
+    return bool(now.commands[key] - hand_over.commands[key] == by)
 
 
 def _as_in_memory(memory: Moment, now: Moment, slot: int) -> bool:
@@ -201,7 +205,7 @@ def _remembered(slot: int) -> frozenset[str]:
 
 
 @goal("seat and mirrors as in memory {slot}", writes=_remembered)
-def seat_recalled(start: Moment, now: Moment, trace: Sequence[Moment], slot: int) -> bool:
+def seat_recalled(hand_over: Moment, now: Moment, trace: Sequence[Moment], slot: int) -> bool:
     """Seat and mirrors stand as one of the driver's memories has them.
 
     Args:
@@ -212,10 +216,15 @@ def seat_recalled(start: Moment, now: Moment, trace: Sequence[Moment], slot: int
 
 @goal(lambda key, entries, in_order: f"added to {key}{', in this order' if in_order else ''}: {entries!r}")
 def entered_all(
-    start: Moment, now: Moment, trace: Sequence[Moment], key: str, entries: tuple[Any, ...], in_order: bool = False
+    hand_over: Moment,
+    now: Moment,
+    trace: Sequence[Moment],
+    key: str,
+    entries: tuple[Any, ...],
+    in_order: bool = False,
 ) -> bool:
     """Exactly these entries were added to a list (messages sent, calls, saved places), in this order or in any."""
-    added = list(now.commands[key][len(start.commands[key]) :])
+    added = list(now.commands[key][len(hand_over.commands[key]) :])
     if in_order or len(added) != len(entries):
         return added == list(entries)
     return all(added.count(entry) == entries.count(entry) for entry in entries)
@@ -223,7 +232,7 @@ def entered_all(
 
 @goal(lambda key, entries: f"{' and '.join(map(repr, entries))} among {key}")
 def app_data_includes(
-    start: Moment, now: Moment, trace: Sequence[Moment], key: str, entries: tuple[Any, ...]
+    hand_over: Moment, now: Moment, trace: Sequence[Moment], key: str, entries: tuple[Any, ...]
 ) -> bool:
     """A list of the apps' data (messages read) contains all of these entries, whatever else it contains."""
     return all(entry in now.commands[key] for entry in entries)
@@ -234,7 +243,7 @@ def app_data_includes(
     writes=lambda *values: frozenset({"messages.sent"}),
 )
 def says_figure(
-    start: Moment, now: Moment, trace: Sequence[Moment], to: str, words: str, figure: float, tolerance: float
+    hand_over: Moment, now: Moment, trace: Sequence[Moment], to: str, words: str, figure: float, tolerance: float
 ) -> bool:
     """Exactly one message was sent, to that person, with these words and one figure, to a tolerance.
 
@@ -243,7 +252,7 @@ def says_figure(
         figure: a number; for a time of day the minutes since midnight.
     """
     key = "messages.sent"
-    added = now.commands[key][len(start.commands[key]) :]
+    added = now.commands[key][len(hand_over.commands[key]) :]
     if len(added) != 1 or added[0]["to"] != to or words not in added[0]["text"]:
         return False
     said = NUMBER.search(added[0]["text"])
@@ -255,7 +264,7 @@ def says_figure(
     writes=lambda *values: frozenset({"messages.sent"}),
 )
 def wrote(
-    start: Moment,
+    hand_over: Moment,
     now: Moment,
     trace: Sequence[Moment],
     to: str,
@@ -269,7 +278,7 @@ def wrote(
         without: what it must not mention.
     """
     key = "messages.sent"
-    added = now.commands[key][len(start.commands[key]) :]
+    added = now.commands[key][len(hand_over.commands[key]) :]
     if len(added) != 1 or added[0]["to"] != to:
         return False
     text, unsaid = [added[0]["text"]], tuple((word,) for word in without)
@@ -277,26 +286,26 @@ def wrote(
 
 
 @goal(lambda key, place, value: f"entry {place + 1} of {key} is {value!r}")
-def app_data_at(start: Moment, now: Moment, trace: Sequence[Moment], key: str, place: int, value: Any) -> bool:
+def app_data_at(hand_over: Moment, now: Moment, trace: Sequence[Moment], key: str, place: int, value: Any) -> bool:
     """One place of a list in the apps' data has a value; the others are unchanged."""
-    wanted = list(start.commands[key])
+    wanted = list(hand_over.commands[key])
     value = list(value) if isinstance(value, tuple) else value
     wanted[place] = {**wanted[place], **value} if isinstance(value, Mapping) else value
     return bool(now.commands[key] == wanted)
 
 
 @goal(lambda key, place: f"entry {place + 1} of {key} is gone")
-def app_data_without(start: Moment, now: Moment, trace: Sequence[Moment], key: str, place: int) -> bool:
+def app_data_without(hand_over: Moment, now: Moment, trace: Sequence[Moment], key: str, place: int) -> bool:
     """One place of a list in the apps' data is gone; the others are unchanged."""
-    wanted = list(start.commands[key])
+    wanted = list(hand_over.commands[key])
     del wanted[place]
     return bool(now.commands[key] == wanted)
 
 
 @goal("seat and mirrors as stored in place {slot}", writes=_remembered)
-def seat_as_stored(start: Moment, now: Moment, trace: Sequence[Moment], slot: int) -> bool:
-    """Seat and mirrors stand as a memory place has them since the start."""
-    return _as_in_memory(start, now, slot)
+def seat_as_stored(hand_over: Moment, now: Moment, trace: Sequence[Moment], slot: int) -> bool:
+    """Seat and mirrors stand as a memory place has them since the hand-over."""
+    return _as_in_memory(hand_over, now, slot)
 
 
 REQUEST_WORDS = {Reroute: "reroute", PullOver: "pull-over", SlowDown: "slow-down"}
@@ -316,7 +325,7 @@ def _road_asked_writes(request: type[RoadRequest] | RoadRequest) -> frozenset[st
 
 @goal(_road_asked, writes=_road_asked_writes)
 def road_asked(
-    start: Moment, now: Moment, trace: Sequence[Moment], request: type[RoadRequest] | RoadRequest
+    hand_over: Moment, now: Moment, trace: Sequence[Moment], request: type[RoadRequest] | RoadRequest
 ) -> bool:
     """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``.
 
@@ -324,16 +333,16 @@ def road_asked(
         request: a class or an exact request: ``road_asked(Reroute)`` accepts any, ``road_asked(Reroute("A 4"))``
             that one.
     """
-    asked = now.commands["requests"][len(start.commands["requests"]) :]
+    asked = now.commands["requests"][len(hand_over.commands["requests"]) :]
     if len(asked) != 1:
         return False
     return isinstance(asked[0], request) if isinstance(request, type) else asked[0] == request
 
 
 @goal("the driver asked once, and first, about {topic.name}", writes=lambda topic: frozenset({"questions"}))
-def asked_first(start: Moment, now: Moment, trace: Sequence[Moment], topic: Topic) -> bool:
+def asked_first(hand_over: Moment, now: Moment, trace: Sequence[Moment], topic: Topic) -> bool:
     """The driver was asked exactly once, before anything was changed, and the question names every alternative."""
-    asked = questions(start, now)
+    asked = questions(hand_over, now)
     if len(asked) != 1 or asked[0]["commands"]:
         return False
     return topic.named(asked[0]["text"]) == len(topic.choices)
@@ -360,30 +369,30 @@ QUIETING = frozenset(
     "the driver asked back about {topic.name}, before anything but the noise was changed",
     writes=lambda topic: frozenset(),  # it may be asked again: the answer, too, has to be heard
 )
-def asked_back(start: Moment, now: Moment, trace: Sequence[Moment], topic: Topic) -> bool:
+def asked_back(hand_over: Moment, now: Moment, trace: Sequence[Moment], topic: Topic) -> bool:
     """The driver was asked about it, or to say it again, before anything but the noise was changed."""
-    for count, asked in enumerate(questions(start, now), start=1):
+    for count, asked in enumerate(questions(hand_over, now), start=1):
         if topic.fits(asked["text"]):
-            then = next(moment for moment in trace if len(questions(start, moment)) >= count)
-            changed = {key for key, value in then.commands.items() if value != start.commands.get(key)}
+            then = next(moment for moment in trace if len(questions(hand_over, moment)) >= count)
+            changed = {key for key, value in then.commands.items() if value != hand_over.commands.get(key)}
             return changed <= QUIETING | {"questions"}
     return False
 
 
 @goal("the driver not asked", writes=frozenset)
-def not_asked(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+def not_asked(hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
     """The driver was not asked anything: what he wants can be found out."""
-    return not questions(start, now)
+    return not questions(hand_over, now)
 
 
 @goal(lambda classes: f"no question but on a {' or '.join(classes)} road", writes=lambda classes: frozenset())
-def asked_on(start: Moment, now: Moment, trace: Sequence[Moment], classes: tuple[str, ...]) -> bool:
+def asked_on(hand_over: Moment, now: Moment, trace: Sequence[Moment], classes: tuple[str, ...]) -> bool:
     """Every question to the driver was begun on a road of these classes, such as where nobody has to merge."""
     return all(moment.driving.road.road_class in classes for moment in _asked_at(trace))
 
 
 @goal("no question while a siren is near", writes=frozenset)
-def asked_without_siren(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+def asked_without_siren(hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
     """No question to the driver was begun while a vehicle with blue lights was coming up from behind."""
     return all(moment.driving.around.emergency_behind is None for moment in _asked_at(trace))
 
@@ -412,8 +421,8 @@ class AllOf:
     def writes(self) -> frozenset[str]:
         return frozenset().union(*(check.writes for check in self.checks))
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return all(check.holds(start, now, trace) for check in self.checks)
+    def holds(self, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return all(check.holds(hand_over, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
         return ", and ".join(map(str, self.checks))
@@ -435,9 +444,9 @@ class AlertGiven:
     def writes(self) -> frozenset[str]:
         return frozenset({"alerts"})
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether there was exactly one alert since the start, of this kind."""
-        before = len(start.commands["alerts"])
+    def holds(self, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether there was exactly one alert since the hand-over, of this kind."""
+        before = len(hand_over.commands["alerts"])
         given = now.commands["alerts"][before:]
         if len(given) != 1 or given[0]["kind"] != self.kind:
             return False
@@ -468,15 +477,15 @@ class AnyOf:
     def writes(self) -> frozenset[str]:
         return frozenset().union(*(check.writes for check in self.checks))
 
-    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        return any(check.holds(start, now, trace) for check in self.checks)
+    def holds(self, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return any(check.holds(hand_over, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
         return ", or ".join(map(str, self.checks))
 
 
 @goal("nothing to do", writes=frozenset)
-def nothing_done(start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+def nothing_done(hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
     """The right act is to leave everything as it is; that nothing else changed is the verdict's *clean* part."""
     return True
 

@@ -103,19 +103,19 @@ class Says:
         )
         return " and ".join(filter(None, told)) or "at once"
 
-    def is_due(self, start: Moment, now: Moment, steps: int) -> bool:
+    def is_due(self, hand_over: Moment, now: Moment, steps: int) -> bool:
         """Whether the driver says it now, unless he has said it already.
 
         Args:
-            start: the hand-over.
+            hand_over: the moment of it.
             steps: actions so far.
         """
         return (
             steps >= self.step
-            and now.time_s - start.time_s >= self.time_s - ROUNDING_S
-            and (not self.changed or any(now.commands[key] != start.commands[key] for key in self.changed))
-            and all(now.commands[key] == start.commands[key] for key in self.unchanged)
-            and len(questions(start, now)) >= self.after
+            and now.time_s - hand_over.time_s >= self.time_s - ROUNDING_S
+            and (not self.changed or any(now.commands[key] != hand_over.commands[key] for key in self.changed))
+            and all(now.commands[key] == hand_over.commands[key] for key in self.unchanged)
+            and len(questions(hand_over, now)) >= self.after
             and (self.when is None or self.when(now))
         )
 
@@ -181,7 +181,6 @@ def is_lost(said: Collection[str], feedback: str | None) -> bool:
 
     Args:
         said: what he said in it.
-        feedback: what the agent was told.
     """
     return PARDON in said or feedback == TALKED_OVER
 
@@ -194,9 +193,9 @@ def understood(step: Step) -> tuple[str, ...]:
     return (action.text or "",) if action is not None and is_told else ()
 
 
-def questions(start: Moment, now: Moment) -> list[dict[str, Any]]:
+def questions(hand_over: Moment, now: Moment) -> list[dict[str, Any]]:
     """The questions since a moment, as the cockpit keeps them: ``text``, and the number of ``commands`` before."""
-    before, after = (moment.commands.get("questions", []) for moment in (start, now))
+    before, after = (moment.commands.get("questions", []) for moment in (hand_over, now))
     asked: list[dict[str, Any]] = after[len(before) :]
     return asked
 

@@ -33,9 +33,9 @@ HEATING = frozenset(
 
 
 @goal("the cabin {by_k:g} K warmer in a minute than with the settings of the start", writes=lambda *values: HEATING)
-def cabin_warmer(start: Moment, now: Moment, trace: Sequence[Moment], by_k: float) -> bool:
-    """In a minute the air of the cabin is warmer by some kelvins than with the settings of the start."""
-    acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, start))
+def cabin_warmer(hand_over: Moment, now: Moment, trace: Sequence[Moment], by_k: float) -> bool:
+    """In a minute the air of the cabin is warmer by some kelvins than with the settings of the hand-over."""
+    acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, hand_over))
     return acted.temperature_c - idle.temperature_c >= by_k
 
 
@@ -43,14 +43,14 @@ def cabin_warmer(start: Moment, now: Moment, trace: Sequence[Moment], by_k: floa
     lambda rear, by: f"the {'rear window' if rear else 'windshield'} clearing, by {by:.0%} within a minute",
     writes=lambda *values: HEATING,
 )
-def glass_clears(start: Moment, now: Moment, trace: Sequence[Moment], rear: bool, by: float) -> bool:
-    """In a minute the fog on the inside of a pane is less than with the settings of the start, by a share.
+def glass_clears(hand_over: Moment, now: Moment, trace: Sequence[Moment], rear: bool, by: float) -> bool:
+    """In a minute the fog on the inside of a pane is less than with the settings of the hand-over, by a share.
 
     Args:
         rear: the rear window, not the windshield.
         by: share of the road that the fog hides no longer, 0 to 1.
     """
-    acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, start))
+    acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, hand_over))
     if rear:
         return idle.rear_window.fog_inside - acted.rear_window.fog_inside >= by
     return idle.windshield.fog_inside - acted.windshield.fog_inside >= by

@@ -85,7 +85,6 @@ def draw(
 
     Args:
         half_name: ``first`` or ``second``.
-        number: which instance, from 0.
         content: the cockpit's content (``Cockpit.content``); without it, a parameter that comes from there is its
             kind in angle brackets.
         held_out: whether to use the held-out phrasing, whatever is drawn; the parameters stay the same.
@@ -121,9 +120,7 @@ def phrased(
 ) -> tuple[str, ...]:
     """Every phrasing with the parameters filled in, and with the seat that it comes from unless it is the driver's.
 
-    Raises:
-        UserError: the driver has no words for it in that language.
-    """
+    Raises UserError: the driver has no words for it in that language."""
     voice = task.half(half_name).start.voice
     prefix = "" if voice is Seat.DRIVER else f"From the {voice.words} seat: "
     suffix = {Suite.CLARIFY: f" {LOOK_FIRST}", Suite.CAMERA: f" {AS_SEEN}"}.get(task.suite, "")
@@ -136,9 +133,7 @@ def phrased(
 def speech(task: Task, language: Language) -> Speech:
     """How the driver says a task in a language other than English.
 
-    Raises:
-        UserError: he has no words for it.
-    """
+    Raises UserError: he has no words for it."""
     if language not in task.languages:
         why = f": {task.only_english}" if task.only_english else ""
         raise UserError(

@@ -116,9 +116,7 @@ def signals_by_name() -> Mapping[str, Signal[Any]]:
 def signal_named(name: str) -> Signal[Any]:
     """The signal of a path or a short name.
 
-    Raises:
-        UnknownNameError: there is none.
-    """
+    Raises UnknownNameError: there is none."""
     known = signals_by_name()
     if name not in known:
         raise UnknownNameError("signal", name, known, "automotive-cosim show signals")
@@ -128,9 +126,7 @@ def signal_named(name: str) -> Signal[Any]:
 def checked(signal: Any, value: Any) -> Any:
     """A value as the signal has it; placeholders are taken as they are.
 
-    Raises:
-        SignalError: it cannot have it.
-    """
+    Raises SignalError: it cannot have it."""
     if not isinstance(signal, Signal) or isinstance(value, Param) or (isinstance(value, str) and "{" in value):
         return value
     return signal.check(str(value) if isinstance(value, str) else value)
@@ -156,9 +152,7 @@ class _Reader:
     def next(self, *kinds: str) -> str:
         """The text of the present token, which is then read.
 
-        Raises:
-            UserError: it is of no such kind.
-        """
+        Raises UserError: it is of no such kind."""
         if self.done or self.kind not in kinds:
             wanted = " or ".join(KINDS[kind] for kind in kinds)
             raise UserError(f"expected {wanted}, found {'the end' if self.done else repr(self.text)}")
@@ -178,9 +172,7 @@ class _Reader:
     def needs(self, text: str, kind: str = "word") -> None:
         """Reads that token.
 
-        Raises:
-            UserError: it is another.
-        """
+        Raises UserError: it is another."""
         if not self.takes(text, kind):
             raise UserError(f"expected {text!r}, found {'the end' if self.done else repr(self.text)}")
 
@@ -261,9 +253,7 @@ def moves(text: str, decode: Decode, solution: Sequence[Move] = ()) -> tuple[Mov
         decode: turns a written value into one of a type.
         solution: what ``first`` and ``last`` are of.
 
-    Raises:
-        UserError: an unknown verb, or something is wrong behind it.
-    """
+    Raises UserError: an unknown verb, or something is wrong behind it."""
     reader, found = _Reader(text, decode), list[Move]()
     while not reader.done:
         verb = reader.next("word")
@@ -378,27 +368,21 @@ _ACTIONS = {str(kind): kind for kind in ActionType}
 def goal(text: str, decode: Decode) -> Any:
     """A check as it is written.
 
-    Raises:
-        UserError: an unknown condition, signal or field, or something is wrong.
-    """
+    Raises UserError: an unknown condition, signal or field, or something is wrong."""
     return _whole(_Goals(text, decode))
 
 
 def condition(text: str, decode: Decode) -> Any:
     """A condition of a trigger as it is written.
 
-    Raises:
-        UserError: as in ``goal``.
-    """
+    Raises UserError: as in ``goal``."""
     return _whole(_Conditions(text, decode))
 
 
 def values_of_signals(text: str, decode: Decode) -> dict[str, Any]:
     """What signals have, by their paths: ``HVAC.FAN_SPEED = 100 and HVAC.AUTO = true``.
 
-    Raises:
-        UserError: as in ``goal``.
-    """
+    Raises UserError: as in ``goal``."""
     reader, found = _Reader(text, decode), dict[str, Any]()
     while not reader.done:
         if found:

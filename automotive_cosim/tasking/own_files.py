@@ -91,9 +91,7 @@ def shipped_files(folder: Path) -> tuple[Path, ...]:
 def own_files(folder: Path) -> list[Path]:
     """The files of a user, in the order of their names.
 
-    Raises:
-        UserError: no such folder, no file in it, or something that is no regular file.
-    """
+    Raises UserError: no such folder, no file in it, or something that is no regular file."""
     if not folder.is_dir():
         raise UserError(f"--tasks-from {folder} is no folder; give one that holds .toml files, or .py with TASKS")
     found = (path for path in folder.iterdir() if path.suffix in (".py", ".toml"))
@@ -113,9 +111,7 @@ def own_files(folder: Path) -> list[Path]:
 def tasks_of(path: Path) -> Iterable[Task]:
     """The tasks of a file.
 
-    Raises:
-        UserError: it cannot be used: file, line and reason.
-    """
+    Raises UserError: it cannot be used: file, line and reason."""
     if path.suffix == ".py":
         return _by_python(path)
     from automotive_cosim.tasking.own_files import check  # with the whole car, which the catalogue does without

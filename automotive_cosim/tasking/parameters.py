@@ -61,9 +61,7 @@ def param(name: str, means: Mapping[Any, Any] | None = None) -> Any:
 def bind(value: T, parameters: Mapping[str, Parameter]) -> T:
     """The value with every parameter in it filled in: in dataclasses, tuples, sets, mappings and texts.
 
-    Raises:
-        KeyError: it names a parameter that does not exist.
-    """
+    Raises KeyError: it names a parameter that does not exist."""
 
     def filled(part: Any) -> Any:
         if isinstance(part, Param):
@@ -124,9 +122,7 @@ _FORM = re.compile(r"|\.[0-3]f|g|d")
 def names(value: object) -> frozenset[str]:
     """The names of the parameters in a value.
 
-    Raises:
-        ValueError: as in ``named_in``.
-    """
+    Raises ValueError: as in ``named_in``."""
     asked = set[str]()
     parts: list[Any] = [value]
     seen: set[int] = set()  # the many shared parts of a catalogue are searched once

@@ -84,9 +84,7 @@ def shared() -> Shared:
 def moves(text: str) -> tuple[Move, ...]:
     """Moves without placeholders (``notation``).
 
-    Raises:
-        UserError: something is wrong with them.
-    """
+    Raises UserError: something is wrong with them."""
     return notation.moves(text, _Reader("", shared().names, shared(), _Cost()).decode)
 
 
@@ -96,9 +94,7 @@ def tasks_in(document: Document, shared: Shared, check: Vet | None = None) -> It
     Args:
         check: finds in a half what is wrong with it, and in which field.
 
-    Raises:
-        UserError: file, line and reason.
-    """
+    Raises UserError: file, line and reason."""
     table, cost = document.table, _Cost()
     own = table.get(NAMES, {})
     if not isinstance(own, Mapping):
@@ -151,9 +147,7 @@ class _Cost:
     def add(self, amount: int) -> None:
         """Counts what is about to be made.
 
-        Raises:
-            UserError: that is too much.
-        """
+        Raises UserError: that is too much."""
         self._left -= amount
         if self._left < 0:
             raise UserError(f"makes more than {bounds.TASK_COST:,} values and characters of this file")

@@ -303,9 +303,7 @@ class Task:
     def half(self, name: str) -> Half:
         """The half ``first`` or ``second``.
 
-        Raises:
-            UnknownNameError: there is no such half.
-        """
+        Raises UnknownNameError: there is no such half."""
         halves = {"first": self.first} | ({"second": self.second} if self.second else {})
         if name not in halves:
             raise UnknownNameError(f"half of task {self.id!r}", name, halves)
@@ -315,9 +313,7 @@ class Task:
     def differs(self) -> frozenset[Differs]:
         """The kinds of its declared difference.
 
-        Raises:
-            ValueError: the declaration does not begin with such kinds.
-        """
+        Raises ValueError: the declaration does not begin with such kinds."""
         kinds = self.difference.partition(":")[0].replace(" and ", ", ").split(", ")
         return frozenset(map(Differs, kinds)) if self.difference else frozenset()
 

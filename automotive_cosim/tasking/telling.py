@@ -85,35 +85,35 @@ def told_value(key: str, value: Any) -> str:
     return str(value)
 
 
-def missing(check: Check, start: Moment, now: Moment, trace: Sequence[Moment]) -> str:
+def missing(check: Check, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> str:
     """What keeps a goal from being reached: what is, and what should be."""
-    return "; ".join(dict.fromkeys(_lacks(check, start, now, trace)))
+    return "; ".join(dict.fromkeys(_lacks(check, hand_over, now, trace)))
 
 
-def _lacks(check: Check, start: Moment, now: Moment, trace: Sequence[Moment]) -> Iterator[str]:
-    if check.holds(start, now, trace):
+def _lacks(check: Check, hand_over: Moment, now: Moment, trace: Sequence[Moment]) -> Iterator[str]:
+    if check.holds(hand_over, now, trace):
         return
     match check:
         case AllOf(checks):
             for each in checks:
-                yield from _lacks(each, start, now, trace)
+                yield from _lacks(each, hand_over, now, trace)
         case AnyOf(checks):
-            yield ", or ".join(missing(each, start, now, trace) for each in checks)
+            yield ", or ".join(missing(each, hand_over, now, trace) for each in checks)
         case SignalIs(signal, values) | AppDataIs(signal, values):
             key = signal if isinstance(signal, str) else signal.path
             yield _is(key, now, " or ".join(told_value(key, value) for value in values))
         case NamedCheck("signal_raised", (signal, by)):
-            least = float(start.signals[signal.path]) + by
+            least = float(hand_over.signals[signal.path]) + by
             yield _is(signal.path, now, f"{told_value(signal.path, least)} or more")
         case NamedCheck("signal_lowered", (signal, by)):
-            most = float(start.signals[signal.path]) - by
+            most = float(hand_over.signals[signal.path]) - by
             yield _is(signal.path, now, f"{told_value(signal.path, most)} or less")
         case SignalWithin(signal, low, high):
             yield _is(signal.path, now, f"{told_value(signal.path, low)} to {told_value(signal.path, high)}")
         case NamedCheck("signal_changed", (signal,)):
             yield f"{told(signal.path)} is still {told_value(signal.path, now.signals[signal.path])}"
         case AlertGiven():
-            given = now.commands["alerts"][len(start.commands["alerts"]) :]
+            given = now.commands["alerts"][len(hand_over.commands["alerts"]) :]
             yield f"{_alerts(given)}, should be {check}"
         case _:
             yield f"there should be {check}"

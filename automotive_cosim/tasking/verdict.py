@@ -235,15 +235,15 @@ def _judge_asked(
     reason: Reason | None,
 ) -> Verdict:
     half = instance.half
-    start, end = trace[0], trace[-1]
+    hand_over, end = trace[0], trace[-1]
     goal_s = _since(instance, trace)
-    lacks = "" if goal_s is not None else missing(half.goal, start, end, trace)
+    lacks = "" if goal_s is not None else missing(half.goal, hand_over, end, trace)
     goal = Part(goal_s is not None, f"not reached: {lacks}" if lacks else "reached")
     return Verdict(
         goal=goal,
         clean=_clean(instance, end, baseline[-1], counterfactual),
         safe=_safe(trace, baseline, half.goal.writes if goal_s is not None else frozenset(), goal_s or 0.0),
-        in_time=_in_time(instance, goal_s, end.time_s - start.time_s),
+        in_time=_in_time(instance, goal_s, end.time_s - hand_over.time_s),
         declared=Part(
             declared in _right(half, reason), f"{declared or 'nothing'} declared, {half.declares} is right"
         ),

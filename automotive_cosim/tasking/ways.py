@@ -94,7 +94,7 @@ def _in_units(move: Move, units: Mapping[str, str]) -> Move:
 
 
 def units_in(make: Make, task: Task) -> Mapping[str, str]:
-    """The make's units at the start of a task, by path of the signal.
+    """The make's units at the hand-over, by path of the signal.
 
     They stay those of home where the task is about them, or asks for figures in an answer; and degrees, where it
     names half degrees, which whole degrees Fahrenheit do not tell apart.

@@ -92,12 +92,7 @@ def shadow(vehicle: SeenVehicle, lens: Lens) -> tuple[FromLens, ...]:
 
 
 def faces(vehicle: SeenVehicle, lens: Lens, *, dark: bool) -> Iterator[Face]:
-    """The faces of a vehicle or a person that can be seen from here, those behind first; then its lamps.
-
-    Args:
-        lens: from where it is seen.
-        dark: whether everybody has lights on.
-    """
+    """The faces of a vehicle or a person that can be seen from here, those behind first; then its lamps."""
     if vehicle.kind in ON_FOOT:
         yield from _person(vehicle, lens, 0.0)
     elif vehicle.kind in TWO_WHEELS:

@@ -149,7 +149,6 @@ class Sights:
         Args:
             snapshot: the vehicles and signals of this instant.
             driving: the own car on its road.
-            outside: light and air.
             car: the own car's lamps and glass.
             length_m: length of a car that is not on the road any more.
         """

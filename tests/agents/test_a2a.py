@@ -16,8 +16,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim.agents import AgentSettings, Caller, StageName, make_agent
-from automotive_cosim.agents.a2a.agent import MOST_CALLS
-from automotive_cosim.agents.a2a.contract import AnswerReader
+from automotive_cosim.agents.a2a.agent import MOST_CALLS, AnswerReader
 from automotive_cosim.agents.registry import PREFIX
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, Observation
 from automotive_cosim.episode.conditions import Conditions

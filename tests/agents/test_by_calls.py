@@ -8,7 +8,7 @@ from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ActionError
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.trial import run_trial
 from automotive_cosim.traffic.fork import Simulations
 

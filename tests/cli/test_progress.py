@@ -8,7 +8,7 @@ from automotive_cosim.cli.batches import ProgressView
 from automotive_cosim.cli.console import Console
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.run.forecast import Range
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.rows import TrialRow
 
 
 def told(*states: tuple[float, int, float | None], expected: Range | None = None) -> list[str]:

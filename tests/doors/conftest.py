@@ -8,8 +8,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.trial import run_trial
+from automotive_cosim.run.trial import Shot, TrialObserver, run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 DRIVE: Json = {"drive": "grid_june", "seed": 3, "minutes": 0.5}

@@ -29,8 +29,16 @@ from a2a.server.events import EventQueue
 from a2a.types import Role, SendMessageRequest, Task, TaskState
 
 from automotive_cosim.doors import a2a
-from automotive_cosim.doors.a2a import Assessor, _Stoppable, _StoppedError, make_app
-from automotive_cosim.doors.assessment import CONFIG, MOST_PARTICIPANTS, MOST_WORDS, read_assessment
+from automotive_cosim.doors.a2a import (
+    CONFIG,
+    MOST_PARTICIPANTS,
+    MOST_WORDS,
+    Assessor,
+    _Stoppable,
+    _StoppedError,
+    make_app,
+    read_assessment,
+)
 from automotive_cosim.doors.guard import MOST_BYTES
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan

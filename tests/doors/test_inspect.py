@@ -18,8 +18,8 @@ from automotive_cosim.interface.observe import ALL
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.report.stats import LEAST_CLUSTERS
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.record import Recorder
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.trial import run_trial
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.tasking.verdict import PARTS
@@ -33,7 +33,7 @@ from inspect_ai.log import EvalLog
 from inspect_ai.model import ModelOutput, ModelUsage, get_model
 from inspect_ai.scorer import SampleScore, Score
 
-from automotive_cosim.doors import inspect_play, inspect_tasks, shared
+from automotive_cosim.doors import inspect_tasks, shared
 from tests.doors.conftest import CALLS
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
@@ -42,7 +42,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 @pytest.fixture
 def service(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> Iterator[EpisodeService]:
     with closing(EpisodeService(simulations, shared.LIMITS)) as made:
-        monkeypatch.setattr(inspect_play, "shared_service", lambda: made)
+        monkeypatch.setattr(inspect_tasks, "shared_service", lambda: made)
         yield made
 
 

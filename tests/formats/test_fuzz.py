@@ -31,10 +31,10 @@ from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.interface.spaces import action_space, decode_action
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.osm import extract
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.run.road import read_record
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.script import read_script
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, write_trace
 from automotive_cosim.scenarios import open_scenario

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.publish.bundle import write_bundle
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import failed
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import opened
 from automotive_cosim.run.worker import run_job

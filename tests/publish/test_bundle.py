@@ -14,8 +14,8 @@ from automotive_cosim.publish import archive
 from automotive_cosim.publish.bundle import cleaned, write_bundle
 from automotive_cosim.publish.contents import read_contents
 from automotive_cosim.publish.verify import verify
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.store import opened, read_rows, read_trace, write_trace
 from tests.models.test_remote import LONG_KEY, SPELLINGS
 

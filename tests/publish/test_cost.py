@@ -21,8 +21,8 @@ from automotive_cosim.publish.contents import NAME, read_contents
 from automotive_cosim.publish.episodes import ROWS, check_trial
 from automotive_cosim.publish.verify import verify
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import judged_file
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.store import read_rows, trace_file
 
 

@@ -25,11 +25,11 @@ from automotive_cosim.publish.episodes import BY_REPLAY, ON_TRUST, check_trial
 from automotive_cosim.publish.problems import ROWS
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.publish.verify import PLAN_ON_TRUST, STARTS_ON_TRUST, _read, hash_problems, verify
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import Judged, read_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import from_line
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import opened, read_evaluation, read_rows, read_trace, write_trace
 from automotive_cosim.run.worker import run_job
@@ -363,9 +363,9 @@ def test_a_replay_finds_what_nothing_else_can(ran, simulations):
 
 def test_an_answer_that_the_driver_did_not_understand_is_none(ran):
     row = judged(ran)
-    start, action = read_judged(ran, row.id, Judged).trace[0], Action(ActionType.ANSWER, text="At 20 degrees.")
+    hand_over, action = read_judged(ran, row.id, Judged).trace[0], Action(ActionType.ANSWER, text="At 20 degrees.")
     for words, said, told in (("", (), ("At 20 degrees.",)), ("", (PARDON,), ()), (TALKED_OVER, ("No!",), ())):
-        step = Step(1, start, (), action, Feedback(FeedbackCode.OK, words), said=said)
+        step = Step(1, hand_over, (), action, Feedback(FeedbackCode.OK, words), said=said)
         assert understood(step) == tuple(episodes._answers(step.as_json())) == told
 
 

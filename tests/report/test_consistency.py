@@ -6,8 +6,8 @@ import pytest
 
 from automotive_cosim.report.consistency import consistency, varied
 from automotive_cosim.report.results import read_results
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.store import opened, write_trace
 
 WON = {

@@ -21,11 +21,11 @@ from automotive_cosim.report.findings import classes
 from automotive_cosim.report.results import Contestant, load_results, pairs, read_results, standings
 from automotive_cosim.report.summary import held_out, main, safety
 from automotive_cosim.report.tables import Cell, Table
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.executor import failed
 from automotive_cosim.run.figures import DriveFigures
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.rerun import compare
+from automotive_cosim.run.rows import EpisodeRow, PartsHeld
 from automotive_cosim.run.store import opened, write_trace
 
 TASKS = [

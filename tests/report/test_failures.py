@@ -15,8 +15,8 @@ from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.record import Recorder
+from automotive_cosim.run.rows import EpisodeRow, PartsHeld
 from automotive_cosim.run.trial import run_trial
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE

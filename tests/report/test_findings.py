@@ -13,8 +13,8 @@ from automotive_cosim.report.results import Results
 from automotive_cosim.report.stats import clustered_mean
 from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.difficulty import WonBy, level, measured, shipped
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.figures import DriveFigures
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.tasking.task import Dimension, Module
 

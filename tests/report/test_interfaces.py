@@ -9,8 +9,8 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.report.interfaces import interfaces
 from automotive_cosim.report.results import Results
 from automotive_cosim.run.coverage import Coverage
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import EpisodeRow
 
 PLAN = make_plan({"agents": ["caller"], "tasks": ["hvac_fan_max", "hvac_cold_hands", "apps_pay_parking"]})
 

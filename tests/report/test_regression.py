@@ -13,10 +13,9 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.report import templates
 from automotive_cosim.report.regression import as_json, changes, junit, markdown, plain
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.executor import failed
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, PartsHeld
 from automotive_cosim.run.store import opened
 
 TASKS = ["road_speed_80_in_50", "hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater", "apps_pay_parking"]

@@ -13,9 +13,9 @@ from automotive_cosim.report.regression import changes, markdown
 from automotive_cosim.report.results import read_results, standings
 from automotive_cosim.report.summary import main, progress, rate_of
 from automotive_cosim.report.tables import Cell
-from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.executor import failed
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import EpisodeRow, PartsHeld
 from automotive_cosim.run.store import opened
 
 TASKS = ["hvac_fan_max", "phenomenon_front_window_fogged", "road_speed_80_in_50"]

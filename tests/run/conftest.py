@@ -9,10 +9,9 @@ import pytest
 from automotive_cosim.agents import Agent, make_agent
 from automotive_cosim.episode.conditions import TABLE, Conditions
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.record import Recorder
-from automotive_cosim.run.trial import run_trial
+from automotive_cosim.run.rows import EpisodeRow
+from automotive_cosim.run.trial import Shot, TrialObserver, run_trial
 from automotive_cosim.traffic.fork import Simulations
 
 TASK = "hvac_fan_max"

@@ -36,7 +36,6 @@ from automotive_cosim.run.attribution import attribute
 from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
@@ -46,6 +45,7 @@ from automotive_cosim.run.rerun import Recorded, compare, played, rerun
 from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.row import as_json, from_json, steady
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.store import read_rows, read_trace
 from automotive_cosim.run.trial import run_trial
 from automotive_cosim.run.trial_folder import read_steps, read_trial

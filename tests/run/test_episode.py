@@ -15,9 +15,8 @@ from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import ActionError, TrafficError, TriggerNotReachedError, UnknownNameError
 from automotive_cosim.interface import trace
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.script import ScriptedAgent
-from automotive_cosim.run.trial import run_trial
+from automotive_cosim.run.trial import TrialObserver, run_trial
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE

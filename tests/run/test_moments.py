@@ -24,12 +24,12 @@ from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.figures import drive_figures, nearest_s, overspeed
 from automotive_cosim.run.moments import Judged, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.regrade import regrade
+from automotive_cosim.run.rows import PartsHeld
 from automotive_cosim.run.trial import run_trial
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import judge

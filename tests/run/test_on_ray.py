@@ -15,11 +15,10 @@ import pytest
 
 from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.run.batch import SPENT, run_plan
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import read_rows, stamp
 

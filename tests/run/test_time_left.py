@@ -15,7 +15,7 @@ from automotive_cosim.cli.batches import time_left
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.budget import Spent
-from automotive_cosim.run.phase import JobPhase
+from automotive_cosim.run.executor import JobPhase
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.trial import WARM_UP_S, WARM_UPS_S

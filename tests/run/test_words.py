@@ -16,7 +16,7 @@ from automotive_cosim.contracts import (
     LimitSource,
     RoadHere,
 )
-from automotive_cosim.run.words import is_over, limit_in_words, road_in_words
+from automotive_cosim.run.timeline import is_over, limit_in_words, road_in_words
 
 VALUES = {
     "text": "hello",

@@ -30,9 +30,8 @@ from automotive_cosim.run.store import opened
 from automotive_cosim.run.trial import run_trial
 from automotive_cosim.safety.dossier.subject import Subject, read_subject
 from automotive_cosim.safety.protocol.calculator import COMMAND, Scores, points
-from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, evidence, protocol
+from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, evidence, protocol, told_on
 from automotive_cosim.safety.protocol.page import NO_RATING, write_protocol
-from automotive_cosim.safety.protocol.told import told_on
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import found as events_on

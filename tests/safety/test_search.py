@@ -18,15 +18,14 @@ from automotive_cosim.drives.staging import BRINGS, ON_REQUEST
 from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.report.stats import upper_bound
 from automotive_cosim.run.budget import Meter, Spent
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.plan import make_plan, read_plan
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit, progress_in_words
-from automotive_cosim.safety.curves import curves, means
 from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, sentence, tables, unseen
 from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, blame, hunt, try_carefully
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
-from automotive_cosim.safety.page import regression_plan
+from automotive_cosim.safety.page import curves, means, regression_plan
 from automotive_cosim.safety.samplers import SAMPLERS, RandomSampler, even_points, make_sampler
 from automotive_cosim.safety.space import (
     FACTORS,

@@ -19,7 +19,7 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.formats.writing import is_being_written, mark_as_written
-from automotive_cosim.run.observer import Shot, TrialObserver
+from automotive_cosim.run.trial import Shot, TrialObserver
 from automotive_cosim.run.trial_folder import shown
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game

@@ -20,9 +20,9 @@ from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.errors import AgentError, UserError
 from automotive_cosim.report.evaluation import write_report
 from automotive_cosim.report.results import read_results
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.rerun import rerun
 from automotive_cosim.run.road import read_record
+from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.serve.person import WAITING, Person, Preview
 from automotive_cosim.serve.play import Game

@@ -15,8 +15,8 @@ import pytest
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.results import read_results
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.executor import failed
+from automotive_cosim.run.rows import PartsHeld
 from automotive_cosim.serve import play
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.detection import FIGURES, detected, figures

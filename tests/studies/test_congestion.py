@@ -1,4 +1,4 @@
-"""Congestion of a network: what SUMO writes, what is made of it, and that a measure alone makes a difference."""
+"""Congestion of a network: what SUMO writes, what is made of it, and that an intervention alone differs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from automotive_cosim.studies import load_study
 from automotive_cosim.studies.commands import app
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows
 from automotive_cosim.studies.congestion.page import answer, warnings
-from automotive_cosim.studies.congestion.plan import MEASURES, CongestionPlan
+from automotive_cosim.studies.congestion.plan import INTERVENTIONS, CongestionPlan
 from automotive_cosim.studies.congestion.results import (
     CongestionStudy,
     NetworkPart,
@@ -31,7 +31,13 @@ from automotive_cosim.studies.congestion.results import (
     queue_m,
     throughput_per_h,
 )
-from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, FlowState, FlowSums, MeasureOutcome
+from automotive_cosim.studies.congestion.rows import (
+    CongestionRow,
+    FlowCell,
+    FlowState,
+    FlowSums,
+    InterventionOutcome,
+)
 from automotive_cosim.studies.congestion.seed import CONGESTION
 from automotive_cosim.studies.congestion.tables import emissions, whole, worst
 from automotive_cosim.studies.congestion.words import PHRASES, name_of
@@ -47,19 +53,19 @@ def cell(
     return FlowCell(from_s=from_s, road_class=road_class, flow=flow, queue_m=queue_m, longest_m=2 * queue_m)
 
 
-def outcome(*found: FlowCell, measure: str = "", backlog: int = 0) -> MeasureOutcome:
+def outcome(*found: FlowCell, intervention: str = "", backlog: int = 0) -> InterventionOutcome:
     """An hour in which a vehicle arrives every minute."""
     states = [
         FlowState(at_s=60.0 * n, running=9, backlog=backlog, departed=n, arrived=n, teleported=0) for n in range(61)
     ]
-    return MeasureOutcome(measure=measure, cells=found, states=tuple(states))
+    return InterventionOutcome(intervention=intervention, cells=found, states=tuple(states))
 
 
-PLAN = CongestionPlan("grid", measures=("closure edge=c1c2",), demand=(1.0, 2.0), step_s=0.1)
+PLAN = CongestionPlan("grid", interventions=("closure edge=c1c2",), demand=(1.0, 2.0), step_s=0.1)
 
 
 def study(*added_s: float, undriven_s: float = 0.0) -> CongestionStudy:
-    """Each seed loses an hour, and more with the measure, with which part of the driving falls away."""
+    """Each seed loses an hour, and more with the intervention, with which part of the driving falls away."""
     rows = [
         CongestionRow(
             id=f"seed{seed}",
@@ -67,7 +73,9 @@ def study(*added_s: float, undriven_s: float = 0.0) -> CongestionStudy:
             seed=seed,
             outcomes=(
                 outcome(cell(0.0, 7200.0, 3600.0)),
-                outcome(cell(0.0, 7200.0 + more_s - undriven_s, 3600.0 + more_s), measure=PLAN.measures[0]),
+                outcome(
+                    cell(0.0, 7200.0 + more_s - undriven_s, 3600.0 + more_s), intervention=PLAN.interventions[0]
+                ),
             ),
         )
         for seed, more_s in enumerate(added_s)
@@ -105,7 +113,7 @@ def test_delay_queues_and_throughput_are_by_class_and_period() -> None:
 
 def test_the_answer_stands_first_and_is_paired_by_seed() -> None:
     found = study(*(3600.0 + 36.0 * seed for seed in range(10)))
-    added = change(found, PLAN.measures[0])
+    added = change(found, PLAN.interventions[0])
     assert added is not None
     assert added.interval is not None
     assert added.value == pytest.approx(1.045)
@@ -181,7 +189,7 @@ def driven(two_ways: Draw, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Cars on the main road of the two ways, with roadworks on it, without and with advice."""
     plan = CongestionPlan(
         str(two_ways(CARS)),
-        measures=("roadworks edge=main limit_kmh=9", "advice share=0", "advice share=1 age_s=300"),
+        interventions=("roadworks edge=main limit_kmh=9", "advice share=0", "advice share=1 age_s=300"),
         seeds=(0,),
         minutes=20.0,
         warm_up_s=300.0,
@@ -196,8 +204,8 @@ def test_roadworks_cost_what_can_be_reckoned(driven: Path) -> None:
     """1,000 m at 2.5 instead of 10 m/s take 300 s more; a car every 20 s makes 15 vehicle-hours an hour."""
     found = CongestionStudy.read(driven)
     assert not found.errors
-    (_, before), (_, works), (_, nobody), (_, all_) = (next(found.outcomes(each)) for each in found.measures)
-    assert found.measures[0] == ""
+    (_, before), (_, works), (_, nobody), (_, all_) = (next(found.outcomes(each)) for each in found.interventions)
+    assert found.interventions[0] == ""
     assert delay_h(found.plan, before) < 0.2, "free but for turns"
     late = [each.flow for each in works.cells if each.from_s == 900.0 and each.road_class == "unknown"]
     lost_h = sum(flow.lost_s for flow in late) / 300.0
@@ -214,7 +222,7 @@ def test_who_is_advised_leaves_the_roadworks(two_ways: Draw, tmp_path: Path) -> 
     """With all of them advised by fresh news, cars take the other way, and the delay falls."""
     plan = CongestionPlan(
         str(two_ways(CARS)),
-        measures=("advice share=1", "advice share=1 compliance=0"),
+        interventions=("advice share=1", "advice share=1 compliance=0"),
         incidents=("roadworks edge=main limit_kmh=9 from_s=-300",),
         seeds=(0,),
         minutes=20.0,
@@ -222,17 +230,17 @@ def test_who_is_advised_leaves_the_roadworks(two_ways: Draw, tmp_path: Path) -> 
     )
     CONGESTION.run(plan, tmp_path / "study")
     found = CongestionStudy.read(tmp_path / "study")
-    without, advised, deaf = (delay_h(plan, next(found.outcomes(each))[1]) for each in found.measures)
+    without, advised, deaf = (delay_h(plan, next(found.outcomes(each))[1]) for each in found.interventions)
     assert advised < 0.6 * without
     assert deaf == without
-    assert answer(found).startswith("“advice to 100 % of the cars”, of 2 measures the strongest, saves")
+    assert answer(found).startswith("“advice to 100 % of the cars”, of 2 interventions the strongest, saves")
 
 
 def test_the_frame_has_each_seed_and_measure_of_every_network(driven: Path, tmp_path: Path) -> None:
     frame, found = load_study(driven), CongestionStudy.read(driven)
-    assert list(frame.measure.fillna("")) == list(found.measures)
+    assert list(frame.intervention.fillna("")) == list(found.interventions)
     assert set(frame.seed) == {0}
-    (_, works) = next(found.outcomes(found.measures[1]))
+    (_, works) = next(found.outcomes(found.interventions[1]))
     assert frame.delay_vehicle_h_per_h[1] == delay_h(found.plan, works)
     for name in ("01_a", "02_b"):
         shutil.copytree(driven, tmp_path / "both" / name)
@@ -277,11 +285,11 @@ def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> N
 def test_the_report_is_whole(driven: Path) -> None:
     report(driven)
     page = (driven / "report.html").read_text(encoding="utf-8")
-    assert page.index("<h1>“roadworks on main at 9 km/h”") < page.index("The network with each measure")
+    assert page.index("<h1>“roadworks on main at 9 km/h”") < page.index("The network with each intervention")
     assert 'automotive_cosim.studies.load_study(".")' in page
     maps = {path.stem for path in (driven / "plots").glob("map_change*.svg")}
-    assert maps == {"map_change", "map_change_2", "map_change_3"}, "each measure has its own"
-    for name in ("delay", "map", *maps, "mfd", "time_space", "time_space_measure"):
+    assert maps == {"map_change", "map_change_2", "map_change_3"}, "each intervention has its own"
+    for name in ("delay", "map", *maps, "mfd", "time_space", "time_space_intervention"):
         assert (driven / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
         assert (driven / "plots" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
         assert (driven / "plots" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
@@ -309,9 +317,9 @@ def test_measures_are_named_in_words(line: str, words: str) -> None:
 
 def test_every_kind_of_measure_has_its_words() -> None:
     """Each phrase has fields that the kind requires, so that it can always be said."""
-    assert PHRASES.keys() == {name for name, kind in MEASURES.items() if not issubclass(kind, EgoIncident)}
+    assert PHRASES.keys() == {name for name, kind in INTERVENTIONS.items() if not issubclass(kind, EgoIncident)}
     for name, phrase in PHRASES.items():
-        required = {each.name for each in fields(MEASURES[name]) if each.default is MISSING}
+        required = {each.name for each in fields(INTERVENTIONS[name]) if each.default is MISSING}
         assert {field for _, field, _, _ in Formatter().parse(phrase) if field} <= required
 
 

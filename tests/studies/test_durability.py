@@ -98,7 +98,7 @@ COMMANDS = {
         ("study", "reroute", *GRID, "--seeds", "0", "--departures", "0", "--delay", "0"), rows(), 24
     ),
     "study congestion": Command(
-        ("study", "congestion", *GRID, "--seeds", "0,1", "--minutes", "5", "--measure", "closure edge=c2c3"),
+        ("study", "congestion", *GRID, "--seeds", "0,1", "--minutes", "5", "--intervention", "closure edge=c2c3"),
         rows(),
         14,
     ),

@@ -105,7 +105,7 @@ REPORTS: dict[str, tuple[Callable[[Path], str], tuple[str, ...]]] = {
     ),
     "congestion": (
         lambda _: of_congestion(congestion(*[3600.0] * 10)),
-        ("“c1c2 closed” costs 1.0", "vehicle-hours an hour of delay", "against no measure", "over 10 seeds"),
+        ("“c1c2 closed” costs 1.0", "vehicle-hours an hour of delay", "against no intervention", "over 10 seeds"),
     ),
     "days": (
         lambda _: of_days(days()),

@@ -21,7 +21,7 @@ AUTO = replace(REROUTE, replicates="auto", together=(0.0, 0.5))
 PLANS = (
     REROUTE,
     AUTO,
-    CongestionPlan("grid", measures=("closure edge=c1c2",), demand=(1.0, 2.0), step_s=0.1),
+    CongestionPlan("grid", interventions=("closure edge=c1c2",), demand=(1.0, 2.0), step_s=0.1),
     DaysPlan("grid", shares=(0.0, 1.0), seeds=(0, 1)),
     AdoptionPlan("grid", seeds=(0, 1), minutes=2.0, warm_up_s=120.0, shares=(0.0, 50.0, 100.0)),
 )
@@ -58,12 +58,12 @@ WRONG: tuple[tuple[TrafficSettings, tuple[tuple[Json, str], ...]], ...] = (
         CongestionPlan("grid"),
         (
             ({"scenario": "grit"}, "grid"),
-            ({"measures": ("closure edge=zz",)}, "edge for cars in --measure"),
-            ({"measures": ("closures edge=c1c2",)}, "did you mean 'closure'"),
-            ({"measures": ("advice share=2",)}, "share is 2"),
-            ({"measures": ("signals control=green",)}, "control"),
-            ({"measures": ("emergency",)}, "needs the ego"),
-            ({"measures": ("advice share=1", "advice share=1")}, "twice"),
+            ({"interventions": ("closure edge=zz",)}, "edge for cars in --intervention"),
+            ({"interventions": ("closures edge=c1c2",)}, "did you mean 'closure'"),
+            ({"interventions": ("advice share=2",)}, "share is 2"),
+            ({"interventions": ("signals control=green",)}, "control"),
+            ({"interventions": ("emergency",)}, "needs the ego"),
+            ({"interventions": ("advice share=1", "advice share=1")}, "twice"),
             ({"incidents": ("advice share=1",)}, "kind in --incident"),
             ({"minutes": 7.0}, "multiple of 5"),
             ({"minutes": 10.0, "demand": (1.0, 2.0, 1.0)}, "--demand has 3 periods"),

@@ -12,9 +12,8 @@ from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.order import ordered
 from automotive_cosim.measures.exposure import BANDS_KMH, ExposureCell, band_named
 from automotive_cosim.report.tables import Table
-from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.rows import DriveTrialRow, TrialRow
 from automotive_cosim.run.trial import NO_MODEL
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.safety.dossier.subject import NOT_COMPLIANT, Section, Subject, fact_table, sentence
 from automotive_cosim.traffic.profiles import PROFILES
 

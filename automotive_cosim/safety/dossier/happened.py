@@ -16,7 +16,7 @@ from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.stats import CONFIDENCE
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.attribution import NOT_MEASURED, culprit, path_of, read_effects
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.safety.dossier.subject import CONFIDENCE_WORDS, Section, Subject, hours_of
 
 MOST_FAILURES = 40

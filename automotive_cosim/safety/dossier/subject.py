@@ -16,11 +16,9 @@ from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.coverage import Coverage
-from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import from_json
+from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, TrialRow
 from automotive_cosim.run.trial_folder import is_trial, read_trial
-from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.safety.findings import of_due
 from automotive_cosim.safety.hunt import NOMINAL
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of

@@ -14,8 +14,7 @@ from automotive_cosim.report.templates import render
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.safety.dossier.subject import read_subject, share_told
 from automotive_cosim.safety.protocol.calculator import Scores, points
-from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, evidence, protocol
-from automotive_cosim.safety.protocol.told import LimitTold, limits_told
+from automotive_cosim.safety.protocol.evidence import PARTS, Evidence, LimitTold, evidence, limits_told, protocol
 
 FOLDER = "protocol"
 NO_RATING = "This is evidence about an agent, from cases in simulation. It is never a rating of a car."
@@ -36,7 +35,6 @@ def write_protocol(folder: Path, name: str, agent: str = "") -> tuple[Path, str]
 
     Args:
         folder: of ``eval`` or ``search``.
-        name: of the protocol.
         agent: whose cases; empty if there is only one.
 
     Returns:

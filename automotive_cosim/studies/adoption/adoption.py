@@ -35,9 +35,8 @@ from automotive_cosim.formats.layout import LIVE
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.models import ChatModel
 from automotive_cosim.run.batch import BatchKind
-from automotive_cosim.run.executor import alone
+from automotive_cosim.run.executor import alone, doing, warming_up
 from automotive_cosim.run.fleet_record import FAILS, FleetRecord
-from automotive_cosim.run.phase import doing, warming_up
 from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.run.script import read_script
 from automotive_cosim.scenarios import Scenario
@@ -87,9 +86,7 @@ class AdoptionPlan(AdoptionSettings):
     def check(self) -> None:
         """Checks every name and number before anything runs.
 
-        Raises:
-            UserError: one does not exist or is out of range.
-        """
+        Raises UserError: one does not exist or is out of range."""
         check_values(self)
         profile(self.driver)
         rule = self.policy
@@ -270,8 +267,6 @@ def drive(
     """Drives a share: what its assistants did, and every car's trip by its id.
 
     Args:
-        job: the plan and the seed.
-        warm: what ``warmed_up`` gave.
         share: 0 to 1.
         assistant: that of the plan if left out.
         keeps: the study's folder, to which the drives of equipped cars are written while they last.
@@ -288,9 +283,7 @@ def drive(
 def own_assistant(agent: str, seed: int) -> Assistant | None:
     """An assistant of a class of the user's, ``package.module:Class``; None if it is an agent of drives.
 
-    Raises:
-        UserError: there is no such class, or it raised.
-    """
+    Raises UserError: there is no such class, or it raised."""
     if ":" not in agent or is_remote(agent):
         return None
     made = own_class(agent, "agent")
@@ -307,9 +300,7 @@ def own_assistant(agent: str, seed: int) -> Assistant | None:
 def agent_of(name: str, settings: AgentSettings = AgentSettings(), model: ChatModel | None = None) -> Agent:  # noqa: B008, frozen
     """An agent of drives by name, or one that plays the actions of a file.
 
-    Raises:
-        UserError: there is no such agent, or the file cannot be read.
-    """
+    Raises UserError: there is no such agent, or the file cannot be read."""
     return read_script(Path(name)) if name.endswith(SCRIPT) else make_agent(*named(name), settings, model)
 
 

@@ -60,9 +60,7 @@ def shown(study: AdoptionStudy) -> ShownStudy:
 def fleets(study: AdoptionStudy) -> tuple[str, dict[str, str]]:
     """The equipped cars of the first seed: a map of the greatest share with links, and a page for each share.
 
-    Raises:
-        UserError: a record is damaged.
-    """
+    Raises UserError: a record is damaged."""
     row = next((each for each in study.rows if each.shares), None)
     last, links, pages = "", [], {}
     for outcome in row.shares if row else ():
@@ -233,9 +231,7 @@ def assistants(study: AdoptionStudy) -> Table:
 def charts(study: AdoptionStudy) -> dict[str, Chart]:
     """Plots by name.
 
-    Raises:
-        SetupError: matplotlib is not installed.
-    """
+    Raises SetupError: matplotlib is not installed."""
     return charted({"gains": ("How much sooner cars arrive, by the share that is equipped", _gains(study))})
 
 

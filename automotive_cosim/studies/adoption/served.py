@@ -17,9 +17,7 @@ from automotive_cosim.studies.adoption.page import COLUMNS, shown_car
 def shares(folder: Path) -> Json:
     """The shares that have been driven, or are being driven.
 
-    Raises:
-        UserError: it is not a study's folder, or is damaged.
-    """
+    Raises UserError: it is not a study's folder, or is damaged."""
     study = AdoptionStudy.read(folder)
     seeds = counted(len(study.plan.jobs()), "seed")
     return {

@@ -53,10 +53,7 @@ def calibrate(
     """Writes a copy of a scenario whose demand carries the counts. A demand that gridlocks is not written.
 
     Args:
-        counts_file: hourly counts, see ``counts``.
         target: the copy's, new or empty; it appears once it is complete.
-        options: the user's options.
-        tell: called with what happens.
         finish: adds to the copy before it appears.
 
     Raises:

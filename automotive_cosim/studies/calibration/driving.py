@@ -99,8 +99,6 @@ def drive(config: str, options: Mapping[str, str], clock: CountedTime, scratch: 
 
     Args:
         config: the scenario's configuration, for error texts.
-        options: SUMO's.
-        scratch: a folder for intermediate files.
 
     Raises:
         ScenarioError: SUMO refuses the scenario; the message is SUMO's.

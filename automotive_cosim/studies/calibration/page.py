@@ -160,31 +160,20 @@ def by_hour(found: Calibration) -> Table:
 def rounds(found: Calibration) -> Table:
     """One row for each round of fit and simulation."""
     rows = tuple(
-        (
-            f"{number}{' (kept)' if number == found.kept + 1 else ''}",
-            f"{each.calibrated.good} of {each.calibrated.count}",
-            f"{each.calibrated.mean_geh:.1f}",
-            f"{each.calibrated.total:.1%}",
-            str(each.carried.vehicles),
-            str(each.carried.routes),
-            str(each.carried.teleports),
-            str(each.carried.backlog),
-            f"{each.carried.halted_share:.0%}",
-        )
+        {
+            "round": f"{number}{' (kept)' if number == found.kept + 1 else ''}",
+            f"GEH < {GOOD_GEH:g}": f"{each.calibrated.good} of {each.calibrated.count}",
+            "mean GEH": f"{each.calibrated.mean_geh:.1f}",
+            "total": f"{each.calibrated.total:.1%}",
+            "vehicles": str(each.carried.vehicles),
+            "routes": str(each.carried.routes),
+            "teleports": str(each.carried.teleports),
+            "waiting": str(each.carried.backlog),
+            "standing": f"{each.carried.halted_share:.0%}",
+        }
         for number, each in enumerate(found.tries, start=1)
     )
-    columns = (
-        "round",
-        f"GEH < {GOOD_GEH:g}",
-        "mean GEH",
-        "total",
-        "vehicles",
-        "routes",
-        "teleports",
-        "waiting",
-        "standing",
-    )
-    return Table("rounds", "Rounds of fit and simulation, calibrated sites", columns, rows)
+    return Table.of("rounds", "Rounds of fit and simulation, calibrated sites", rows)
 
 
 def times(found: Calibration) -> Table:

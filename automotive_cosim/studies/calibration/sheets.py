@@ -65,7 +65,6 @@ def read_sheet(
     """Reads a table; if no line has the wanted columns, its first one names them.
 
     Args:
-        path: the file, also gzipped.
         known: columns whose case and spaces do not matter.
 
     Raises:

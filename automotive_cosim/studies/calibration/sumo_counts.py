@@ -65,7 +65,6 @@ def read_xml_counts(path: Path, detectors: Path | None) -> Flows:
     """The flows of a file of edge data, or of what induction loops wrote.
 
     Args:
-        path: the file, also gzipped.
         detectors: the file that says on which lane each loop lies; edge data needs none.
 
     Raises UserError: it is neither, cannot be read, has an impossible figure, or lacks the place of a loop."""

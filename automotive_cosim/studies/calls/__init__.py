@@ -5,5 +5,5 @@ ledger    keeps a record of all vehicles, and reads it
 chance    other random numbers from here on
 chosen    drives a day on which what is asked of each driver is known before
 divert    sends other cars the ego's other way
-flow      takes a measure, and measures a network
+flow      intervenes, and measures a network
 """

@@ -45,7 +45,6 @@ def divert(running: Running, old: Edges, new: Edges, share: float, seed: int) ->
     Args:
         old: the section of the ego's route, as ``section`` makes it.
         share: share of the cars, 0 to 1; a greater share contains those of every smaller one.
-        seed: who is asked first.
 
     Returns:
         The cars that took it, and how many could have.

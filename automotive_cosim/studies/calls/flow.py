@@ -1,6 +1,6 @@
 """What a study does to a copy of the traffic without an ego: advice to other cars, and other signals.
 
-Both begin at the instant of the copy, so two copies of one instant differ by the measure alone.
+Both begin at the instant of the copy, so two copies of one instant differ by the intervention alone.
 """
 
 from __future__ import annotations
@@ -147,20 +147,20 @@ class _Advisor:
                 return
 
 
-def take(running: Running, measure: AnyIncident | Advice | SignalControl, seed: int) -> None:
-    """Takes a measure now; the times of incidents count from the end of the warm-up.
+def take(running: Running, intervention: AnyIncident | Advice | SignalControl, seed: int) -> None:
+    """Takes an intervention now; the times of incidents count from the end of the warm-up.
 
     Raises ScenarioError: it does not fit the network."""
     world = running.world
-    match measure:
+    match intervention:
         case Advice():  # with a search of its own
             router = Router(running.sumo, world.network, world.congestion, SEARCHING_TYPE)
-            running.watchers.append(_Advisor(running.sumo, router, measure, seed))
+            running.watchers.append(_Advisor(running.sumo, router, intervention, seed))
         case SignalControl():
-            if not control(running.sumo, measure):
+            if not control(running.sumo, intervention):
                 raise ScenarioError("the network has no signals to control in another way")
         case _:
-            world.stage(measure)
+            world.stage(intervention)
 
 
 def flow(running: Running, duration_s: float, every_s: float) -> tuple[FlowSummary, ...]:

@@ -30,9 +30,7 @@ class Ledger:
         """Opens the ledger.
 
         Args:
-            sumo: the running simulation.
             consumptions: also what every vehicle emits and consumes, which costs about a third of SUMO's own step.
-            tracks: also where the ego is.
         """
         self._sumo = sumo
         self._step_s = step_s

@@ -107,7 +107,6 @@ def equip(running: Running, share: float, seed: int, driver: str) -> None:
     """Puts a cockpit into a share of the cars that set out from now on; a greater share has all cars of a smaller.
 
     Args:
-        running: the traffic.
         share: 0 to 1.
         seed: of the draw, and of the drivers' reactions.
         driver: name of the profile by which they react; else they drive as they would.

@@ -1,11 +1,12 @@
-"""``automotive-cosim study``: what rerouting saves, what a measure does to congestion."""
+"""``automotive-cosim study``: what rerouting saves, what an intervention does to congestion."""
 
 import typer
 
-from automotive_cosim.studies.commands.compare import compare
 from automotive_cosim.studies.commands.network import COMMANDS
-from automotive_cosim.studies.commands.reroute import reroute
+from automotive_cosim.studies.commands.reroute import compare, reroute
 
-app = typer.Typer(help="Measure what rerouting saves and what a measure does to congestion.", no_args_is_help=True)
+app = typer.Typer(
+    help="Measure what rerouting saves and what an intervention does to congestion.", no_args_is_help=True
+)
 for command in (reroute, *COMMANDS, compare):
     app.command()(command)

@@ -28,7 +28,7 @@ def congestion(
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
-    """Measure the delay of a whole network before and after a measure, in copies of the same traffic.
+    """Measure the delay of a whole network before and after an intervention, in copies of the same traffic.
 
     Rerun the command to resume a stopped study.
     """
@@ -39,8 +39,8 @@ def congestion(
     tell_reading(plan.scenario)
     plan.check()
     tell_notes([plan.opened])
-    measures, over = counted(len(plan.measures), "measure"), counted(len(plan.seeds), "seed")
-    about = f"{measures} and none, {over}, in steps of {plan.driven_step_s(plan.opened):g} s"
+    interventions, over = counted(len(plan.interventions), "intervention"), counted(len(plan.seeds), "seed")
+    about = f"{interventions} and none, {over}, in steps of {plan.driven_step_s(plan.opened):g} s"
     _run(plan, CONGESTION, "seeds", out, settings, as_json=as_json, about=about)
 
 

@@ -27,7 +27,7 @@ from automotive_cosim.studies.congestion.outputs import JUNCTIONS, OTHER
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
 from automotive_cosim.studies.congestion.results import HOUR_S, CongestionStudy, strongest
 from automotive_cosim.studies.congestion.rows import FlowSums
-from automotive_cosim.studies.congestion.tables import all_measures, network_of
+from automotive_cosim.studies.congestion.tables import all_interventions, network_of
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.ways import way_through
 
@@ -35,42 +35,42 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 DRAWN = 4
-"""Most measures in one plot: more hide each other."""
+"""Most interventions in one plot: more hide each other."""
 
 
 def charts(study: CongestionStudy) -> dict[str, Chart]:
     """Plots by name. Raises SetupError: matplotlib is not installed."""
     network = network_of(study)
-    named = [(number, name) for number, name in all_measures(study) if number <= DRAWN]
+    named = [(number, name) for number, name in all_interventions(study) if number <= DRAWN]
     made: dict[str, tuple[str, Drawing | None]] = {
         "delay": ("Time lost on the road, in the course of time", _lost(study)),
-        "map": ("Time lost on the road without a measure", lost_map(study, network, 0, WIDE_IN)),
+        "map": ("Time lost on the road without an intervention", lost_map(study, network, 0, WIDE_IN)),
     }
     narrow = {"map": lost_map(study, network, 0, NARROW_IN)}
-    measures = sorted(
-        (each for each in all_measures(study) if each[0]), key=lambda each: each[0] != strongest(study)
+    interventions = sorted(
+        (each for each in all_interventions(study) if each[0]), key=lambda each: each[0] != strongest(study)
     )
-    shown = measures[:1]
-    for number, name in measures:
+    shown = interventions[:1]
+    for number, name in interventions:
         key = "map_change" if (number, name) in shown else f"map_change_{number}"
         made[key] = f"Change of the time lost with “{name}”", lost_map(study, network, number, WIDE_IN)
         narrow[key] = lost_map(study, network, number, NARROW_IN)
     made["mfd"] = "Macroscopic fundamental diagram of the network", _fundamental(study, network)
     for number, name in (*named[:1], *shown):
         title = f"Time-space diagram of “{study.plan.along.name}”" + (f" with “{name}”" if number else "")
-        made["time_space_measure" if number else "time_space"] = title, _time_space(study, network, number)
+        made["time_space_intervention" if number else "time_space"] = title, _time_space(study, network, number)
     return charted(made, narrow)
 
 
 def _lost(study: CongestionStudy) -> Drawing | None:
     """Vehicle-hours lost on the road per hour, in five minutes, mean over the seeds."""
-    named = [each for each in all_measures(study) if each[0] <= DRAWN]
+    named = [each for each in all_interventions(study) if each[0] <= DRAWN]
     if not any(row.outcomes for row in study.rows):
         return None
 
     def draw(axes: Axes) -> None:
         for number, name in named:
-            outcomes = [outcome for _, outcome in study.outcomes(study.measures[number])]
+            outcomes = [outcome for _, outcome in study.outcomes(study.interventions[number])]
             times = np.arange(0, study.plan.duration_s, EPOCH_S)
             values = [
                 fmean(sum(cell.flow.lost_s for cell in each.cells if cell.from_s == at_s) for each in outcomes)
@@ -83,7 +83,7 @@ def _lost(study: CongestionStudy) -> Drawing | None:
                 marker=MARKERS[number],
                 color=PALETTE[number],
                 markersize=5,
-                label="without a measure" if not number else name,
+                label="without an intervention" if not number else name,
             )
         for number in range(1, len(study.plan.demand)):
             axes.axvline(number * study.plan.period_s / 60, color=INK, alpha=0.4, linewidth=1, linestyle=":")
@@ -103,7 +103,7 @@ def _fundamental(study: CongestionStudy, network: Network) -> Drawing | None:
     Both by Edie's definitions (1963): total distance, and total time, by the length of all lanes and the time.
     """
     lanes_m = sum(edge.length_m * len(edge.lane_ids) for edge in network.edges.values())
-    named = [each for each in all_measures(study) if each[0] <= DRAWN]
+    named = [each for each in all_interventions(study) if each[0] <= DRAWN]
     if not any(row.outcomes for row in study.rows):
         return None
 
@@ -112,7 +112,7 @@ def _fundamental(study: CongestionStudy, network: Network) -> Drawing | None:
         for number, name in named:
             density: list[float] = []
             flows: list[float] = []
-            for _, outcome in study.outcomes(study.measures[number]):
+            for _, outcome in study.outcomes(study.interventions[number]):
                 epochs: dict[float, FlowSums] = {}
                 for cell in outcome.cells:
                     if cell.road_class not in (JUNCTIONS, OTHER):
@@ -128,7 +128,7 @@ def _fundamental(study: CongestionStudy, network: Network) -> Drawing | None:
                 linewidths=0,
                 marker=MARKERS[number],
                 color=PALETTE[number],
-                label="without a measure" if not number else name,
+                label="without an intervention" if not number else name,
             )
         for speed_kmh in (10, 20, 30, 50, 80):
             end = min(1.08 * densest, 1.08 * most / speed_kmh)

@@ -1,4 +1,4 @@
-"""Maps of time lost: every road in the colour of what is lost on it or of what a measure changes, with a scale."""
+"""Maps of time lost: every road in the colour of what it costs or what an intervention changes, with a scale."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.report.charts import INK, PALETTE, WIDE_IN, Drawing, legend
 from automotive_cosim.scenarios.wording import KINDS
-from automotive_cosim.studies.congestion.plan import measure_in
+from automotive_cosim.studies.congestion.plan import intervention_in
 from automotive_cosim.studies.congestion.results import CongestionStudy
 from automotive_cosim.studies.congestion.tables import lost_on_edges
 from automotive_cosim.studies.congestion.words import name_of
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 GROWS = ("#ffd27f", "#fd8d3c", "#e31a1c", "#800026")
 """Colours of the classes of time lost, from little to much."""
 SHRINKS = ("#9ecae1", "#4292c6", "#2171b5", "#08306b")
-"""The same for less than without the measure."""
+"""The same for less than without the intervention."""
 LITTLE = "#d0d5dd"
 """Colour of what is below the first class."""
 
@@ -36,7 +36,7 @@ MANY = 3_000
 
 
 def lost_map(study: CongestionStudy, network: Network, number: int, width_in: float) -> Drawing | None:
-    """The time lost per kilometre of road without a measure (0), or what the measure of that number changes."""
+    """The time lost per kilometre of road without an intervention (0), or what that intervention changes."""
     before = lost_on_edges(study, 0)
     if not before:
         return None
@@ -130,15 +130,15 @@ def _aside(shape: tuple[tuple[float, float], ...], by_m: float) -> list[tuple[fl
 
 
 def _places(axes: Axes, study: CongestionStudy, network: Network, number: int) -> None:
-    """Marks the corridor's ends and where incidents and the measure are."""
+    """Marks the corridor's ends and where incidents and the intervention are."""
     trip = study.plan.along
     start, goal = network.edges[trip.from_edge].shape_m[0], network.edges[trip.to_edge].shape_m[-1]
     axes.plot(*start, "o", color=INK, markersize=7, fillstyle="none", label=f"start of “{trip.name}”")
     axes.plot(*goal, "*", color=INK, markersize=11, label=f"destination of “{trip.name}”")
-    texts = [*study.plan.incidents, *study.plan.measures[number - 1 : number if number else 0]]
+    texts = [*study.plan.incidents, *study.plan.interventions[number - 1 : number if number else 0]]
     for text in texts:
         if text.split()[0] in KINDS:
-            found = measure_in(text, "--measure")
+            found = intervention_in(text, "--intervention")
             edges = getattr(found, "edges", ()) or filter(None, (getattr(found, "edge", ""),))
             places = [network.edges[edge].shape_m for edge in edges if edge in network.edges]
             if places:

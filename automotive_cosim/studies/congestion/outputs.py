@@ -19,7 +19,7 @@ EDGES = "edges"
 """Folder of the flows on every edge, in a study's."""
 JUNCTIONS, OTHER, UNKNOWN = "junctions", "other", "unknown"
 """Inside junctions; edges on which no car may drive; roads whose class the network does not tell."""
-COLUMNS = ("measure", "edge", "from_s", "time_s", "lost_s", "distance_m")
+COLUMNS = ("intervention", "edge", "from_s", "time_s", "lost_s", "distance_m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,6 @@ def read_flows(
     """The flows of a run, edge by edge and interval by interval.
 
     Args:
-        folder: SUMO's outputs.
         begin_s: simulation time from which ``from_s`` counts.
         slowed: for every interval, edges with a lower limit than usual: its share of the usual one, against which
             time is lost there, and the time of vehicles at their stops, which is not lost.
@@ -113,12 +112,12 @@ def rounded(flow: FlowSums) -> FlowSums:
 
 
 def write_edges(folder: Path, job: str, measured: Sequence[Sequence[EdgeFlow]]) -> None:
-    """Writes the flows of a seed, those without a measure first, without the inside of junctions.
+    """Writes the flows of a seed, those without an intervention first, without the inside of junctions.
 
     Raises OSError: it cannot be written."""
     lines = (
-        (measure, each.edge, f"{each.from_s:g}", flow.time_s, flow.lost_s, flow.distance_m)
-        for measure, flows in enumerate(measured)
+        (intervention, each.edge, f"{each.from_s:g}", flow.time_s, flow.lost_s, flow.distance_m)
+        for intervention, flows in enumerate(measured)
         for each in flows
         if not each.edge.startswith(":") and (flow := rounded(each.flow))
     )
@@ -129,7 +128,7 @@ def read_edges(path: Path) -> Iterator[EdgeRow]:
     """What ``write_edges`` wrote; nothing if the file is not there."""
     for row in read_packed_csv(path):
         yield EdgeRow(
-            measure=int(row["measure"]),
+            intervention=int(row["intervention"]),
             edge=row["edge"],
             from_s=float(row["from_s"]),
             time_s=float(row["time_s"]),

@@ -1,4 +1,4 @@
-"""What a congestion study runs: the traffic of every seed, without a measure and with each."""
+"""What a congestion study runs: the traffic of every seed, without an intervention and with each."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ INTERVAL_S, EPOCH_S = 60.0, 300.0
 """Length of the intervals of the flow on every edge, and of those over which travel times vary (five minutes, as in
 FHWA's reports on reliability)."""
 
-Measure = AnyIncident | Advice | SignalControl
-MEASURES = {**KINDS, "advice": Advice, "signals": SignalControl}
+Intervention = AnyIncident | Advice | SignalControl
+INTERVENTIONS = {**KINDS, "advice": Advice, "signals": SignalControl}
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +37,8 @@ class CongestionPlan(CongestionSettings):
                 f"--demand has {len(self.demand)} periods in {self.minutes:g} minutes; each must be a multiple of "
                 f"{EPOCH_S / 60:g} minutes"
             )
-        for text, place in (*((each, "--measure") for each in self.measures), *self._incidents):
-            found = measure_in(text, place)
+        for text, place in (*((each, "--intervention") for each in self.interventions), *self._incidents):
+            found = intervention_in(text, place)
             if not isinstance(found, Advice | SignalControl):
                 if isinstance(found, EgoIncident):
                     raise UserError(f"{place} has {found.kind!r}, which needs the ego, but this study has none")
@@ -55,7 +55,7 @@ class CongestionPlan(CongestionSettings):
         return opened(self.scenario)
 
     def scene(self) -> Scenario:
-        """The scenario as it is driven, without a measure. Raises ScenarioError: it cannot be read."""
+        """The scenario as it is driven, without an intervention. Raises ScenarioError: it cannot be read."""
         incidents: list[AnyIncident] = [read_line(text, KINDS, place) for text, place in self._incidents]
         scenario = driven_at(
             self.opened,
@@ -93,18 +93,18 @@ class CongestionPlan(CongestionSettings):
         return self.opened.ego.trips[0]
 
     def jobs(self) -> tuple[CongestionJob, ...]:
-        """One for every seed, with all measures; a city runs slower than real time."""
-        limit_s = 3_600.0 + 10 * self.duration_s * (1 + len(self.measures))
+        """One for every seed, with all interventions; a city runs slower than real time."""
+        limit_s = 3_600.0 + 10 * self.duration_s * (1 + len(self.interventions))
         return tuple(SeedJob(self, seed, CongestionRow, limit_s) for seed in self.seeds)
 
 
 CongestionJob = SeedJob[CongestionPlan, CongestionRow]
 
 
-def measure_in(text: str, place: str) -> Measure:
-    """The measure that a line describes, as ``closure edge=c2c3``, ``advice share=0.5`` or
+def intervention_in(text: str, place: str) -> Intervention:
+    """The intervention that a line describes, as ``closure edge=c2c3``, ``advice share=0.5`` or
     ``signals control=static``.
 
     Raises UserError: it is none."""
-    found: Measure = read_line(text, MEASURES if place == "--measure" else KINDS, place)
+    found: Intervention = read_line(text, INTERVENTIONS if place == "--intervention" else KINDS, place)
     return found

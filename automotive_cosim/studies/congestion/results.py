@@ -22,7 +22,7 @@ import numpy as np
 from automotive_cosim.contracts import Json
 from automotive_cosim.studies.congestion.outputs import EDGES, read_edges
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S, CongestionPlan
-from automotive_cosim.studies.congestion.rows import CongestionRow, EdgeRow, FlowCell, FlowSums, MeasureOutcome
+from automotive_cosim.studies.congestion.rows import CongestionRow, EdgeRow, FlowCell, FlowSums, InterventionOutcome
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
 
@@ -38,10 +38,10 @@ class CongestionStudy(StudyContent[CongestionPlan, CongestionRow]):
 
     plan_type = CongestionPlan
     row_type = CongestionRow
-    line_is = "seed and measure"
+    line_is = "seed and intervention"
 
     def lines(self) -> Iterator[Json]:
-        """Every seed without a measure, and with each."""
+        """Every seed without an intervention, and with each."""
         plan = self.plan
         for row in self.rows:
             for outcome in row.outcomes:
@@ -49,7 +49,7 @@ class CongestionStudy(StudyContent[CongestionPlan, CongestionRow]):
                 yield {
                     "scenario": row.scenario,
                     "seed": row.seed,
-                    "measure": outcome.measure or None,
+                    "intervention": outcome.intervention or None,
                     "delay_vehicle_h_per_h": delay_h(plan, outcome),
                     "driven_km": flow.distance_m / 1000,
                     "time_h": flow.time_s / HOUR_S,
@@ -63,15 +63,15 @@ class CongestionStudy(StudyContent[CongestionPlan, CongestionRow]):
                 }
 
     @property
-    def measures(self) -> tuple[str, ...]:
-        """No measure, then all of the plan."""
-        return ("", *self.plan.measures)
+    def interventions(self) -> tuple[str, ...]:
+        """No intervention, then all of the plan."""
+        return ("", *self.plan.interventions)
 
-    def outcomes(self, measure: str) -> Iterator[tuple[int, MeasureOutcome]]:
-        """Seed and outcome of a measure."""
+    def outcomes(self, intervention: str) -> Iterator[tuple[int, InterventionOutcome]]:
+        """Seed and outcome of an intervention."""
         for row in self.rows:
             for each in row.outcomes:
-                if each.measure == measure:
+                if each.intervention == intervention:
                     yield row.seed, each
 
     @property
@@ -85,11 +85,11 @@ class CongestionStudy(StudyContent[CongestionPlan, CongestionRow]):
 
     @cached_property
     def edges(self) -> dict[tuple[int, str, float], FlowSums]:
-        """The flow by number of the measure, edge and minute, summed over the seeds."""
+        """The flow by number of the intervention, edge and minute, summed over the seeds."""
         sums: dict[tuple[int, str, float], FlowSums] = {}
         for row in self.rows:
             for each in read_edges(self.folder / EDGES / f"{row.id}.csv.gz"):
-                key = each.measure, each.edge, each.from_s
+                key = each.intervention, each.edge, each.from_s
                 sums[key] = sums.get(key, FlowSums()) + _flow(each)
         return sums
 
@@ -105,7 +105,7 @@ class NetworkPart:
     road_class: str | None = None
     period: int | None = None
 
-    def cells(self, plan: CongestionPlan, outcome: MeasureOutcome) -> Iterator[FlowCell]:
+    def cells(self, plan: CongestionPlan, outcome: InterventionOutcome) -> Iterator[FlowCell]:
         for cell in outcome.cells:
             if self.road_class in (None, cell.road_class) and self.period in (
                 None,
@@ -121,32 +121,32 @@ class NetworkPart:
 WHOLE = NetworkPart()
 
 
-def flow_in(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> FlowSums:
+def flow_in(plan: CongestionPlan, outcome: InterventionOutcome, part: NetworkPart = WHOLE) -> FlowSums:
     """The flow of a part."""
     return sum((cell.flow for cell in part.cells(plan, outcome)), FlowSums())
 
 
-def waited_s(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
+def waited_s(plan: CongestionPlan, outcome: InterventionOutcome, part: NetworkPart = WHOLE) -> float:
     """Vehicle-seconds outside, waiting for room to enter; only of all classes of road together."""
     states = [s for s in outcome.states[1:] if part.period in (None, int((s.at_s - 1) // plan.period_s))]
     return 0.0 if part.road_class else sum(each.backlog for each in states) * INTERVAL_S
 
 
-def delay_h(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
+def delay_h(plan: CongestionPlan, outcome: InterventionOutcome, part: NetworkPart = WHOLE) -> float:
     """Vehicle-hours of delay per hour; of a class of road alone, of time lost on it."""
     lost_s = flow_in(plan, outcome, part).lost_s + waited_s(plan, outcome, part)
     return lost_s / HOUR_S / part.hours(plan)
 
 
 def detour_h(
-    plan: CongestionPlan, before: MeasureOutcome, after: MeasureOutcome, part: NetworkPart = WHOLE
+    plan: CongestionPlan, before: InterventionOutcome, after: InterventionOutcome, part: NetworkPart = WHOLE
 ) -> float:
     """Vehicle-hours per hour that what is driven more takes without congestion; negative if less is driven."""
     free_s = flow_in(plan, after, part).free_s - flow_in(plan, before, part).free_s
     return free_s / HOUR_S / part.hours(plan)
 
 
-def throughput_per_h(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
+def throughput_per_h(plan: CongestionPlan, outcome: InterventionOutcome, part: NetworkPart = WHOLE) -> float:
     """Arrivals per hour."""
     first_s = 0.0 if part.period is None else part.period * plan.period_s
     last_s = first_s + part.hours(plan) * HOUR_S
@@ -154,7 +154,7 @@ def throughput_per_h(plan: CongestionPlan, outcome: MeasureOutcome, part: Networ
     return (arrived[last_s] - arrived[first_s]) / part.hours(plan)
 
 
-def queue_m(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> tuple[float, float]:
+def queue_m(plan: CongestionPlan, outcome: InterventionOutcome, part: NetworkPart = WHOLE) -> tuple[float, float]:
     """Mean total length of the queues, and the longest one of a lane, in m."""
     found = list(part.cells(plan, outcome))
     epochs = part.hours(plan) * HOUR_S / EPOCH_S
@@ -174,7 +174,9 @@ class Indices:
         return self.planning_time / self.travel_time - 1
 
 
-def indices(plan: CongestionPlan, outcomes: Iterable[MeasureOutcome], part: NetworkPart = WHOLE) -> Indices | None:
+def indices(
+    plan: CongestionPlan, outcomes: Iterable[InterventionOutcome], part: NetworkPart = WHOLE
+) -> Indices | None:
     """The indices over all seeds and five minutes; None if nobody drove there."""
     epochs: dict[tuple[int, float], FlowSums] = {}
     for number, outcome in enumerate(outcomes):
@@ -193,28 +195,30 @@ def indices(plan: CongestionPlan, outcomes: Iterable[MeasureOutcome], part: Netw
 
 
 def strongest(study: CongestionStudy) -> int:
-    """Number of the measure that changes the delay most; 0 without measures."""
-    changes = [change(study, measure) for measure in study.plan.measures]
+    """Number of the intervention that changes the delay most; 0 without interventions."""
+    changes = [change(study, intervention) for intervention in study.plan.interventions]
     sizes = [0.0 if each is None else abs(each.value) for each in changes]
     return 1 + sizes.index(max(sizes)) if sizes else 0
 
 
-def change(study: CongestionStudy, measure: str, part: NetworkPart = WHOLE) -> SeedMean | None:
-    """What a measure adds to the delay, in vehicle-hours per hour, seed by seed."""
-    return paired(study, measure, lambda one, two: delay_h(study.plan, two, part) - delay_h(study.plan, one, part))
+def change(study: CongestionStudy, intervention: str, part: NetworkPart = WHOLE) -> SeedMean | None:
+    """What an intervention adds to the delay, in vehicle-hours per hour, seed by seed."""
+    return paired(
+        study, intervention, lambda one, two: delay_h(study.plan, two, part) - delay_h(study.plan, one, part)
+    )
 
 
-def cost(study: CongestionStudy, measure: str) -> SeedMean | None:
-    """What a measure costs in delay and detours, in vehicle-hours per hour, seed by seed."""
+def cost(study: CongestionStudy, intervention: str) -> SeedMean | None:
+    """What an intervention costs in delay and detours, in vehicle-hours per hour, seed by seed."""
     plan = study.plan
     return paired(
-        study, measure, lambda one, two: delay_h(plan, two) - delay_h(plan, one) + detour_h(plan, one, two)
+        study, intervention, lambda one, two: delay_h(plan, two) - delay_h(plan, one) + detour_h(plan, one, two)
     )
 
 
 def paired(
-    study: CongestionStudy, measure: str, of: Callable[[MeasureOutcome, MeasureOutcome], float]
+    study: CongestionStudy, intervention: str, of: Callable[[InterventionOutcome, InterventionOutcome], float]
 ) -> SeedMean | None:
-    """The mean of a figure of the traffic without and with a measure, seed by seed."""
+    """The mean of a figure of the traffic without and with an intervention, seed by seed."""
     before = dict(study.outcomes(""))
-    return seed_mean((seed, of(before[seed], outcome)) for seed, outcome in study.outcomes(measure))
+    return seed_mean((seed, of(before[seed], outcome)) for seed, outcome in study.outcomes(intervention))

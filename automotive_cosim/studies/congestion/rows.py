@@ -1,4 +1,4 @@
-"""The rows of a congestion study: one per seed, with the traffic without a measure and with each."""
+"""The rows of a congestion study: one per seed, with the traffic without an intervention and with each."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class FlowCell:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlowState:
-    """The traffic as a whole at an instant; counts begin with the measure."""
+    """The traffic as a whole at an instant; counts begin with the intervention."""
 
     at_s: float
     """Seconds after the end of the warm-up."""
@@ -75,10 +75,10 @@ class Emitted(Consumption):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MeasureOutcome:
-    """The traffic without a measure, or with one."""
+class InterventionOutcome:
+    """The traffic without an intervention, or with one."""
 
-    measure: str
+    intervention: str
     """As in the plan; empty without one."""
     cells: tuple[FlowCell, ...]
     states: tuple[FlowState, ...]
@@ -98,16 +98,16 @@ class CongestionRow(JobRow):
 
     scenario: str
     seed: int
-    outcomes: tuple[MeasureOutcome, ...] = ()
-    """Without a measure first, then in the order of the plan."""
+    outcomes: tuple[InterventionOutcome, ...] = ()
+    """Without an intervention first, then in the order of the plan."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EdgeRow:
     """The flow on one edge in one minute: a line of ``edges/SEED.csv.gz``."""
 
-    measure: int
-    """0 without a measure, then their numbers in the plan."""
+    intervention: int
+    """0 without an intervention, then their numbers in the plan."""
     edge: str
     from_s: float
     time_s: float

@@ -1,6 +1,6 @@
-"""One seed of a congestion study: its traffic is warmed up once, and copied for no measure and for each.
+"""One seed of a congestion study: its traffic is warmed up once, and copied for no intervention and for each.
 
-All copies start from the same instant with the same random numbers, so they differ by the measure alone.
+All copies start from the same instant with the same random numbers, so they differ by the intervention alone.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from functools import partial
 from pathlib import Path
 
 from automotive_cosim.run.batch import BatchKind
-from automotive_cosim.run.executor import alone
-from automotive_cosim.run.phase import doing, warming_up
+from automotive_cosim.run.executor import alone, doing, warming_up
 from automotive_cosim.studies.calls.flow import FlowSummary, flow, take
 from automotive_cosim.studies.calls.ledger import keep_ledger
 from automotive_cosim.studies.congestion.outputs import (
@@ -30,9 +29,15 @@ from automotive_cosim.studies.congestion.plan import (
     INTERVAL_S,
     CongestionJob,
     CongestionPlan,
-    measure_in,
+    intervention_in,
 )
-from automotive_cosim.studies.congestion.rows import CongestionRow, Emitted, FlowCell, FlowState, MeasureOutcome
+from automotive_cosim.studies.congestion.rows import (
+    CongestionRow,
+    Emitted,
+    FlowCell,
+    FlowState,
+    InterventionOutcome,
+)
 from automotive_cosim.studies.gridlock import gridlock
 from automotive_cosim.traffic.fork import Forked, RemoteCopy
 from automotive_cosim.traffic.network import read_network
@@ -46,8 +51,8 @@ def run_seed(job: CongestionJob, folder: Path) -> CongestionRow:
     configuration = read_configuration(scenario.config)
     of = class_in(read_network(configuration.net))
     begin_s = configuration.begin_s + scenario.sumo.warm_up_s
-    names = ("", *plan.measures)
-    outcomes: list[MeasureOutcome] = []
+    names = ("", *plan.interventions)
+    outcomes: list[InterventionOutcome] = []
     edges: list[Sequence[EdgeFlow]] = []
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-flow-") as scratch, ExitStack() as stack:
         warm = Forked(
@@ -59,7 +64,7 @@ def run_seed(job: CongestionJob, folder: Path) -> CongestionRow:
         for name in names:
             copy = stack.enter_context(closing(warm.copy()))
             if name:
-                copy.call(take, measure_in(name, "--measure"), job.seed)
+                copy.call(take, intervention_in(name, "--intervention"), job.seed)
             copy.begin(flow, plan.duration_s, INTERVAL_S)
             running.append(copy)
         tell = _teller()
@@ -88,14 +93,14 @@ def _teller() -> Callable[[float, float], None]:
         nonlocal far_s
         if done_s >= far_s:
             far_s, amount = done_s, f"{done_s:.0f} of {total_s:.0f} s"
-            doing("driving the traffic with and without measures", amount, share=done_s / total_s)
+            doing("driving the traffic with and without interventions", amount, share=done_s / total_s)
 
     return tell
 
 
 def _outcome(
     name: str, plan: CongestionPlan, found: tuple[FlowCell, ...], summaries: Sequence[FlowSummary]
-) -> MeasureOutcome:
+) -> InterventionOutcome:
     """An outcome from the flows and from the traffic's states, the first of which is that of the copy."""
     first = summaries[0]
     states = tuple(
@@ -111,8 +116,8 @@ def _outcome(
         for number, each in enumerate(summaries)
     )
     jam = gridlock([each.summary for each in summaries[:: round(EPOCH_S / INTERVAL_S)]])
-    return MeasureOutcome(
-        measure=name,
+    return InterventionOutcome(
+        intervention=name,
         cells=found,
         states=states,
         emitted=tuple(_emitted(plan, summaries)),

@@ -7,7 +7,7 @@ from datetime import timedelta
 from statistics import fmean
 
 from automotive_cosim.contracts import KMH_PER_MPS
-from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.report.tables import Table, TableRecord, TableRow
 from automotive_cosim.studies.congestion.results import (
     HOUR_S,
     WHOLE,
@@ -25,7 +25,7 @@ from automotive_cosim.studies.congestion.results import (
     throughput_per_h,
     waited_s,
 )
-from automotive_cosim.studies.congestion.rows import Emitted, FlowSums, MeasureOutcome
+from automotive_cosim.studies.congestion.rows import Emitted, FlowSums, InterventionOutcome
 from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.reroute.tables import NONE, errors_table, told, told_mean
@@ -42,123 +42,99 @@ def tables(study: CongestionStudy) -> list[Table]:
     return [table for table in made if table.rows]
 
 
-def mean(study: CongestionStudy, measure: str, of: Callable[[MeasureOutcome], float]) -> float:
+def mean(study: CongestionStudy, intervention: str, of: Callable[[InterventionOutcome], float]) -> float:
     """The mean of a figure over the seeds."""
-    found = [of(outcome) for _, outcome in study.outcomes(measure)]
+    found = [of(outcome) for _, outcome in study.outcomes(intervention)]
     return fmean(found) if found else 0.0
 
 
 def whole(study: CongestionStudy) -> Table:
-    """The network as a whole, without a measure and with each."""
+    """The network as a whole, without an intervention and with each."""
     plan = study.plan
-    rows: list[TableRow] = []
-    for measure in study.measures:
-        outcomes = [outcome for _, outcome in study.outcomes(measure)]
+    rows: list[TableRecord] = []
+    for intervention in study.interventions:
+        outcomes = [outcome for _, outcome in study.outcomes(intervention)]
         found = indices(plan, outcomes)
         if found is None:
             continue
         flow = sum((flow_in(plan, outcome) for outcome in outcomes), FlowSums())
         before_h = mean(study, "", lambda each: delay_h(plan, each))
-        added = change(study, measure) if measure else None
+        added = change(study, intervention) if intervention else None
+        waiting_s = mean(study, intervention, lambda each: waited_s(plan, each))
         rows.append(
-            (
-                name_of(measure),
-                f"{mean(study, measure, lambda each: delay_h(plan, each)):.2f}",
-                told_mean(added, "+.2f"),
-                NONE if added is None or not before_h else told(added.value / before_h, "+.0%"),
-                told_mean(
-                    paired(study, measure, lambda one, two: detour_h(plan, one, two)) if measure else None, "+.2f"
+            {
+                "Intervention": name_of(intervention),
+                "Delay, veh-h/h": f"{mean(study, intervention, lambda each: delay_h(plan, each)):.2f}",
+                "Change, veh-h/h": told_mean(added, "+.2f"),
+                "Change": NONE if added is None or not before_h else told(added.value / before_h, "+.0%"),
+                "Detours, veh-h/h": told_mean(
+                    paired(study, intervention, lambda one, two: detour_h(plan, one, two))
+                    if intervention
+                    else None,
+                    "+.2f",
                 ),
-                told_mean(cost(study, measure) if measure else None, "+.2f"),
-                f"{found.travel_time:.2f}",
-                f"{found.planning_time:.2f}",
-                f"{found.buffer:.0%}",
-                f"{KMH_PER_MPS * flow.distance_m / flow.time_s:.1f}",
-                f"{mean(study, measure, lambda each: queue_m(plan, each)[0]):.0f}",
-                f"{max(queue_m(plan, each)[1] for each in outcomes):.0f}",
-                f"{mean(study, measure, lambda each: throughput_per_h(plan, each)):.0f}",
-                f"{flow.distance_m / 1000 / len(outcomes) / WHOLE.hours(plan):.0f}",
-                f"{mean(study, measure, lambda each: waited_s(plan, each)) / HOUR_S / WHOLE.hours(plan):.2f}",
-            )
+                "Both, veh-h/h": told_mean(cost(study, intervention) if intervention else None, "+.2f"),
+                "Travel time index": f"{found.travel_time:.2f}",
+                "Planning time index": f"{found.planning_time:.2f}",
+                "Buffer index": f"{found.buffer:.0%}",
+                "Mean speed, km/h": f"{KMH_PER_MPS * flow.distance_m / flow.time_s:.1f}",
+                "Queues, m": f"{mean(study, intervention, lambda each: queue_m(plan, each)[0]):.0f}",
+                "Longest queue, m": f"{max(queue_m(plan, each)[1] for each in outcomes):.0f}",
+                "Arrivals per h": f"{mean(study, intervention, lambda each: throughput_per_h(plan, each)):.0f}",
+                "Veh-km per h": f"{flow.distance_m / 1000 / len(outcomes) / WHOLE.hours(plan):.0f}",
+                "Waiting outside, veh-h/h": f"{waiting_s / HOUR_S / WHOLE.hours(plan):.2f}",
+            }
         )
-    columns = (
-        "Measure",
-        "Delay, veh-h/h",
-        "Change, veh-h/h",
-        "Change",
-        "Detours, veh-h/h",
-        "Both, veh-h/h",
-        "Travel time index",
-        "Planning time index",
-        "Buffer index",
-        "Mean speed, km/h",
-        "Queues, m",
-        "Longest queue, m",
-        "Arrivals per h",
-        "Veh-km per h",
-        "Waiting outside, veh-h/h",
-    )
     note = (
         "Means over the seeds. Delay: vehicle-hours of time lost on the road (SUMO's time loss, signals included) "
         "and of waiting outside for room to enter. Change: of the delay, seed by seed, against the copy of the same"
-        f" traffic without the measure; in brackets 95 % t intervals, from {LEAST_SEEDS} seeds. Detours: what is "
-        "driven more, in vehicle-hours without congestion; negative if less is driven, as in a jam. Travel time "
+        f" traffic without the intervention; in brackets 95 % t intervals, from {LEAST_SEEDS} seeds. Detours: what "
+        "is driven more, in vehicle-hours without congestion; negative if less is driven, as in a jam. Travel time "
         "index: time of all vehicles divided by that of the same distances without congestion; planning time index:"
         " its 95th percentile over all five minutes of all seeds; buffer index: what that exceeds the mean by. "
         "Queues: mean total length; longest: of a lane, in any seed."
     )
-    return Table("whole", "The network with each measure", columns, tuple(rows), note)
+    return Table.of("whole", "The network with each intervention", rows, note)
 
 
 def by_class(study: CongestionStudy) -> Table:
     """The same by class of road and period of the demand."""
     plan = study.plan
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     periods = (None, *range(len(plan.demand))) if len(plan.demand) > 1 else (None,)
     for period in periods:
         for road_class in study.classes:
             part = NetworkPart(road_class, period)
-            for measure in study.measures:
-                outcomes = [outcome for _, outcome in study.outcomes(measure)]
+            for intervention in study.interventions:
+                outcomes = [outcome for _, outcome in study.outcomes(intervention)]
                 found = indices(plan, outcomes, part)
                 if found is None:
                     continue
                 flow = sum((flow_in(plan, outcome, part) for outcome in outcomes), FlowSums())
                 queues = [queue_m(plan, outcome, part) for outcome in outcomes]
                 rows.append(
-                    (
-                        *((period_name(study, period),) if len(periods) > 1 else ()),
-                        road_class,
-                        name_of(measure),
-                        f"{fmean(delay_h(plan, each, part) for each in outcomes):.2f}",
-                        told_mean(change(study, measure, part) if measure else None, "+.2f"),
-                        f"{found.travel_time:.2f}",
-                        f"{found.planning_time:.2f}",
-                        f"{found.buffer:.0%}",
-                        f"{fmean(total for total, _ in queues):.0f}",
-                        f"{max(longest for _, longest in queues):.0f}",
-                        f"{flow.distance_m / 1000 / len(outcomes) / part.hours(plan):.0f}",
-                    )
+                    {
+                        **({"Time": period_name(study, period)} if len(periods) > 1 else {}),
+                        "Road class": road_class,
+                        "Intervention": name_of(intervention),
+                        "Time lost, veh-h/h": f"{fmean(delay_h(plan, each, part) for each in outcomes):.2f}",
+                        "Change, veh-h/h": told_mean(
+                            change(study, intervention, part) if intervention else None, "+.2f"
+                        ),
+                        "Travel time index": f"{found.travel_time:.2f}",
+                        "Planning time index": f"{found.planning_time:.2f}",
+                        "Buffer index": f"{found.buffer:.0%}",
+                        "Queues, m": f"{fmean(total for total, _ in queues):.0f}",
+                        "Longest queue, m": f"{max(longest for _, longest in queues):.0f}",
+                        "Veh-km per h": f"{flow.distance_m / 1000 / len(outcomes) / part.hours(plan):.0f}",
+                    }
                 )
-    columns = (
-        *(("Time",) if len(periods) > 1 else ()),
-        "Road class",
-        "Measure",
-        "Time lost, veh-h/h",
-        "Change, veh-h/h",
-        "Travel time index",
-        "Planning time index",
-        "Buffer index",
-        "Queues, m",
-        "Longest queue, m",
-        "Veh-km per h",
-    )
     note = (
         "Classes are OpenStreetMap's. Time lost: on the road, the part of the delay that belongs to a class; "
         "waiting outside belongs to none. Other figures as above."
     )
     title = "By class of road and hour" if len(periods) > 1 else "By class of road"
-    return Table("by_class", title, columns, tuple(rows), note, heads=len(columns) - 8)
+    return Table.of("by_class", title, rows, note, heads=2 + (len(periods) > 1))
 
 
 def period_name(study: CongestionStudy, period: int | None) -> str:
@@ -175,83 +151,81 @@ def emissions(study: CongestionStudy) -> Table:
     """What all vehicles emit and consume, by emission class."""
     hours = WHOLE.hours(study.plan)
 
-    def per_h(outcome: MeasureOutcome, name: str, of: Callable[[Emitted], float]) -> float:
+    def per_h(outcome: InterventionOutcome, name: str, of: Callable[[Emitted], float]) -> float:
         return sum(of(each) for each in outcome.emitted if each.emission_class == name) / hours
 
-    kinds: tuple[tuple[Callable[[Emitted], float], str], ...] = (
-        (lambda each: each.co2_g / 1000, ".1f"),
-        (lambda each: each.nox_g, ".1f"),
-        (lambda each: each.fuel_g / 1000, ".1f"),
-        (lambda each: each.energy_wh / 1000, ".2f"),
-        (lambda each: each.noise_s / HOUR_S, ".2f"),
-    )
+    kinds: dict[str, tuple[Callable[[Emitted], float], str]] = {
+        "CO2, kg/h": (lambda each: each.co2_g / 1000, ".1f"),
+        "NOx, g/h": (lambda each: each.nox_g, ".1f"),
+        "Fuel, kg/h": (lambda each: each.fuel_g / 1000, ".1f"),
+        "Electricity, kWh/h": (lambda each: each.energy_wh / 1000, ".2f"),
+        "Noise, h/h": (lambda each: each.noise_s / HOUR_S, ".2f"),
+    }
     named = sorted({each.emission_class for _, outcome in study.outcomes("") for each in outcome.emitted})
     rows: list[TableRow] = []
     for name in named:
         before = dict(study.outcomes(""))
-        for measure in study.measures:
+        for intervention in study.interventions:
             cells = []
-            for of, form in kinds:
-                if measure:
+            for of, form in kinds.values():
+                if intervention:
                     added = seed_mean(
                         (seed, per_h(outcome, name, of) - per_h(before[seed], name, of))
-                        for seed, outcome in study.outcomes(measure)
+                        for seed, outcome in study.outcomes(intervention)
                     )
                     cells.append(told_mean(added, f"+{form}"))
                 else:
                     cells.append(f"{fmean(per_h(each, name, of) for each in before.values()):{form}}")
-            rows.append((name, name_of(measure), *cells))
-    columns = (
-        "Emission class",
-        "Measure",
-        "CO2, kg/h",
-        "NOx, g/h",
-        "Fuel, kg/h",
-        "Electricity, kWh/h",
-        "Noise, h/h",
-    )
+            rows.append((name, name_of(intervention), *cells))
     note = (
-        "Without a measure as it is, with one as the change. Classes are those that the demand's vehicle types "
-        "declare (emissionClass), else SUMO's own for the kind of vehicle. Noise is sound energy at the vehicles "
-        "(Harmonoise), in hours of a car at 50 km/h, 65 dB(A)."
+        "Without an intervention as it is, with one as the change. Classes are those that the demand's vehicle "
+        "types declare (emissionClass), else SUMO's own for the kind of vehicle. Noise is sound energy at the "
+        "vehicles (Harmonoise), in hours of a car at 50 km/h, 65 dB(A)."
     )
+    columns = "Emission class", "Intervention", *kinds
     return Table("emissions", "Emissions and consumption", columns, tuple(rows), note, heads=2)
 
 
 def roads(study: CongestionStudy) -> Table:
-    """The roads where the strongest measure changes the time lost most; without any, where most is lost."""
+    """The roads where the strongest intervention changes the time lost most; without any, where most is lost."""
     network = network_of(study)
     rows = [
         (
             network.edges[edge].name or NONE,
             edge,
             f"{before:.2f}",
-            *((f"{after:.2f}", told(after - before, "+.2f")) if study.plan.measures else ()),
+            *((f"{after:.2f}", told(after - before, "+.2f")) if study.plan.interventions else ()),
         )
         for edge, before, after in worst(study)
     ]
-    measured = ("Time lost with the measure", "Change") if study.plan.measures else ()
+    measured = ("Time lost with the intervention", "Change") if study.plan.interventions else ()
     note = "Vehicle-hours lost on the edge per hour, means over the seeds."
-    if study.plan.measures:
-        note = f"{note[:-1]}, with “{name_of(study.measures[strongest(study)])}”."
-    title = "Roads where the time lost changes most" if study.plan.measures else "Roads where most time is lost"
+    if study.plan.interventions:
+        note = f"{note[:-1]}, with “{name_of(study.interventions[strongest(study)])}”."
+    title = (
+        "Roads where the time lost changes most" if study.plan.interventions else "Roads where most time is lost"
+    )
     return Table("roads", title, ("Street", "Edge", "Time lost", *measured), tuple(rows), note, heads=2)
 
 
 def worst(study: CongestionStudy, most: int = WORST) -> list[tuple[str, float, float]]:
-    """Edges for cars with the vehicle-hours lost on them per hour without and with the strongest measure."""
+    """Edges for cars with the vehicle-hours lost on them per hour without and with the strongest intervention."""
     before, after = (lost_on_edges(study, number) for number in (0, strongest(study)))
     known = network_of(study).edges
-    by = (lambda edge: after.get(edge, 0.0) - before.get(edge, 0.0)) if study.plan.measures else before.__getitem__
+    by = (
+        (lambda edge: after.get(edge, 0.0) - before.get(edge, 0.0))
+        if study.plan.interventions
+        else before.__getitem__
+    )
     named = sorted({edge for edge in (*before, *after) if edge in known}, key=lambda edge: -abs(by(edge)))
     return [(edge, before.get(edge, 0.0), after.get(edge, 0.0)) for edge in named[:most]]
 
 
 def lost_on_edges(study: CongestionStudy, number: int) -> dict[str, float]:
-    """Vehicle-hours lost on every edge per hour with a measure, mean over the seeds."""
+    """Vehicle-hours lost on every edge per hour with an intervention, mean over the seeds."""
     sums: dict[str, float] = {}
-    for (measure, edge, _), flow in study.edges.items():
-        if measure == number:
+    for (intervention, edge, _), flow in study.edges.items():
+        if intervention == number:
             sums[edge] = sums.get(edge, 0.0) + flow.lost_s
     divisor = HOUR_S * WHOLE.hours(study.plan) * max(1, sum(row.error is None for row in study.rows))
     return {edge: lost_s / divisor for edge, lost_s in sums.items()}
@@ -267,7 +241,7 @@ def errors(study: CongestionStudy) -> Table:
     return errors_table("Seed", study.errors)
 
 
-def all_measures(study: CongestionStudy) -> Iterator[tuple[int, str]]:
-    """Number and name of no measure and of each."""
-    for number, measure in enumerate(study.measures):
-        yield number, name_of(measure)
+def all_interventions(study: CongestionStudy) -> Iterator[tuple[int, str]]:
+    """Number and name of no intervention and of each."""
+    for number, intervention in enumerate(study.interventions):
+        yield number, name_of(intervention)

@@ -1,4 +1,4 @@
-"""Measures and incidents in words, for tables, legends and answers: ``c2c3 closed`` for ``closure edge=c2c3``."""
+"""Interventions and incidents in words, for tables and answers: ``c2c3 closed`` for ``closure edge=c2c3``."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ SHARES = frozenset({"share", "compliance"})
 
 
 def name_of(text: str) -> str:
-    """A measure or incident as its line says it, in words; two that differ have different names.
+    """An intervention or incident as its line says it, in words; two that differ have different names.
 
     Args:
-        text: a line that a plan has checked, as ``closure edge=c2c3``; empty for no measure.
+        text: a line that a plan has checked, as ``closure edge=c2c3``; empty for no intervention.
     """
     kind, *pairs = text.split() or [""]
     phrase = PHRASES.get(kind)

@@ -27,8 +27,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.run.batch import BatchKind
-from automotive_cosim.run.executor import Job, alone
-from automotive_cosim.run.phase import doing
+from automotive_cosim.run.executor import Job, alone, doing
 from automotive_cosim.run.row import JobRow, columns
 from automotive_cosim.scenarios import Scenario, variant
 from automotive_cosim.studies.content import StudyContent

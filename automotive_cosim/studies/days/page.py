@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
-from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.report.tables import Table, TableRecord
 from automotive_cosim.studies.content import ShownStudy
 from automotive_cosim.studies.days.days import (
     EQUILIBRIUM,
@@ -148,7 +148,7 @@ def warnings(study: DaysStudy) -> list[str]:
 
 def tables(study: DaysStudy) -> list[Table]:
     """All tables."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     nobody, best, least = (
         {row.seed: row.last(lambda day: day.mean_s) or 0.0 for row in study.of(drivers)}
         for drivers in (0.0, EQUILIBRIUM, OPTIMUM)
@@ -163,33 +163,21 @@ def tables(study: DaysStudy) -> list[Table]:
         settled = [row.settled for row in here]
         is_searched = isinstance(drivers, str)
         rows.append(
-            (
-                named(drivers),
-                str(len(here)),
-                NONE
+            {
+                "Drivers": named(drivers),
+                "Seeds": str(len(here)),
+                "Settled on day": NONE
                 if is_searched or None in settled
                 else f"{fmean(day for day in settled if day is not None):.0f}",
-                told_mean(mean_s(study, drivers), ".1f"),
-                told_mean(over_seeds(here, lambda day: day.advised_s), ".1f"),
-                told_mean(over_seeds(here, lambda day: day.others_s), ".1f"),
-                NONE if drivers == 0 else against[0],
-                NONE if drivers == EQUILIBRIUM else against[1],
-                NONE if drivers == OPTIMUM else against[2],
-                _per_cent(over_seeds(here, lambda day: day.relative_gap)),
-            )
+                "Trip, s": told_mean(mean_s(study, drivers), ".1f"),
+                "Advised, s": told_mean(over_seeds(here, lambda day: day.advised_s), ".1f"),
+                "Others, s": told_mean(over_seeds(here, lambda day: day.others_s), ".1f"),
+                "Against nobody, s": NONE if drivers == 0 else against[0],
+                "Against equilibrium, s": NONE if drivers == EQUILIBRIUM else against[1],
+                "Against optimum, s": NONE if drivers == OPTIMUM else against[2],
+                "Relative gap": _per_cent(over_seeds(here, lambda day: day.relative_gap)),
+            }
         )
-    columns = (
-        "Drivers",
-        "Seeds",
-        "Settled on day",
-        "Trip, s",
-        "Advised, s",
-        "Others, s",
-        "Against nobody, s",
-        "Against equilibrium, s",
-        "Against optimum, s",
-        "Relative gap",
-    )
     note = (
         f"Means of the last {min(WEEK, study.plan.days + 1)} days, from the planned departure to the arrival. "
         f"Settled: the mean of {WEEK} days differs by less than {SETTLED:.0%} from that of the {WEEK} days before. "
@@ -197,7 +185,7 @@ def tables(study: DaysStudy) -> list[Table]:
         "not be the least there is. Differences: seed by seed. Relative gap: what all drivers lost against the "
         "routes that were quickest that day; 0 is a user equilibrium."
     )
-    return [Table("shares", "Travel time by the share of advised drivers", columns, tuple(rows), note)]
+    return [Table.of("shares", "Travel time by the share of advised drivers", rows, note)]
 
 
 def _per_cent(mean: SeedMean | None) -> str:

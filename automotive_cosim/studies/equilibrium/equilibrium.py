@@ -78,7 +78,6 @@ def equilibrate(
     Args:
         folder: the scenario's, or a ``.sumocfg``.
         target: the copy's, new or empty; it appears once it is complete.
-        tell: called after every step.
 
     Raises:
         UserError: the target exists, or the demand has stops or persons.

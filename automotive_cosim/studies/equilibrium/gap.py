@@ -202,7 +202,6 @@ def measure(scenario: Scenario, *, observe_s: float = 3600.0, seed: int = 0) -> 
     Args:
         scenario: the scenario, with its own share of cars that reroute.
         observe_s: how long after the warm-up departures count.
-        seed: SUMO's seed.
 
     Raises:
         ScenarioError: SUMO refuses the scenario; the message is SUMO's.
@@ -223,9 +222,7 @@ def drive(
     """Drives a demand once, with what would have been better; raises like ``measure``.
 
     Args:
-        scenario: how SUMO runs.
         observe_s: how long after the warm-up departures count.
-        seed: SUMO's seed.
         cost: what edges cost a driver, from their times.
     """
     first_s = configuration.begin_s + scenario.sumo.warm_up_s
@@ -307,8 +304,6 @@ def run(configuration: Configuration, scenario: Scenario, observe_s: float, seed
 
     Args:
         observe_s: how long after the warm-up departures count.
-        seed: SUMO's seed.
-        scratch: a folder for intermediate files.
     """
     sumo = replace(scenario.sumo, step_length_s=1.0)
     copies = copied(configuration, scratch)
@@ -347,7 +342,6 @@ def quickest(
         trips: only departures, types, first and last edges are read.
         net: the network's file, in that folder.
         types: the vehicle types, as SUMO's XML.
-        scratch: a folder for intermediate files.
         via: an edge that the route of a trip must use, by the trip's id.
 
     Raises ScenarioError: duarouter refuses the network or the types."""

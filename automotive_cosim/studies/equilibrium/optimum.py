@@ -116,7 +116,6 @@ def compare(
         target: folder of a copy of it on the routes of the best step; it appears once it is complete.
         options: as for the equilibrium; its gap is not used.
         seeds: with which both are driven, two or more, none of them that of the search.
-        tell: called after every step.
 
     Raises:
         UserError: the target exists.

@@ -9,8 +9,7 @@ from pathlib import Path
 from automotive_cosim.formats.layout import LIVE, WATCHED
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.batch import BatchKind
-from automotive_cosim.run.executor import Runner, tried
-from automotive_cosim.run.phase import doing, warming_up
+from automotive_cosim.run.executor import Runner, doing, tried, warming_up
 from automotive_cosim.run.store import Store
 from automotive_cosim.studies.calls.accounts import TrafficSummary
 from automotive_cosim.studies.calls.chance import fresh_of

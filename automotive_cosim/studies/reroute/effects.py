@@ -7,7 +7,7 @@ from itertools import pairwise, product
 from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.report.tables import Table, TableRecord, TableRow
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
 from automotive_cosim.studies.reroute.compare import CONSUMED
 from automotive_cosim.studies.reroute.everyone import CLASSES_S, HORIZONS, NOTICED_S
@@ -26,7 +26,7 @@ def effects(study: Study) -> list[Table]:
 
 def whole(study: Study) -> Table:
     """The value of a policy over the whole drive."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for share in sorted({row.share for row in study.rows}):
         for policy, compliance in product(study.plan.policies, study.plan.compliance):
             drives: dict[str, list[WholeTrip]] = {}
@@ -49,34 +49,28 @@ def whole(study: Study) -> Table:
                 )
             }
             rows.append(
-                (
-                    f"{share:.0%}",
-                    policy,
-                    f"{compliance:.0%}",
-                    str(len(kept)),
-                    str(len(drives) - len(kept)),
-                    told_mean(means["reroutings"], ".2f"),
-                    told_mean(means["time"], "+.1f"),
-                    told_mean(means["distance"], "+.0f"),
-                    told_mean(means["others"], "+.1f"),
-                )
+                {
+                    "Share rerouting": f"{share:.0%}",
+                    "Policy": policy,
+                    "Compliance": f"{compliance:.0%}",
+                    "Drives": str(len(kept)),
+                    "Excluded": str(len(drives) - len(kept)),
+                    "Reroutings": told_mean(means["reroutings"], ".2f"),
+                    "Time saved, s": told_mean(means["time"], "+.1f"),
+                    "Distance saved, m": told_mean(means["distance"], "+.0f"),
+                    "Others save, s": told_mean(means["others"], "+.1f"),
+                }
             )
-    columns = (
-        "Share rerouting",
-        "Policy",
-        "Compliance",
-        "Drives",
-        "Excluded",
-        "Reroutings",
-        "Time saved, s",
-        "Distance saved, m",
-        "Others save, s",
-    )
     note = (
         "Per drive from departure to destination, compared with the drive that keeps its route from the same "
         "traffic; drives that meet no decision count, with 0. The policy decides by the newest news of the plan."
     )
-    return Table("whole", "What following a policy saves over the whole drive", columns, tuple(rows), note, heads=3)
+    return Table.of("whole", "What following a policy saves over the whole drive", rows, note, heads=3)
+
+
+def named(heads: tuple[str, str, str]) -> dict[str, str]:
+    """Share, policy and age of the news under their headings."""
+    return dict(zip(("Share rerouting", "Policy", "News age, s"), heads, strict=True))
 
 
 def rerouted(study: Study) -> list[tuple[tuple[str, str, str], list[SpreadOf]]]:
@@ -111,32 +105,23 @@ def together_by_share(study: Study) -> dict[tuple[float, float], list[tuple[int,
 def many(study: Study) -> Table:
     """The cost when many cars take the other route at once."""
     left_out = sum(any(each.excluded for each in point.decision.together) for point in study.decisions)
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for (rerouting, share), here in together_by_share(study).items():
         rows.append(
-            (
-                f"{rerouting:.0%}",
-                f"{share:.0%}",
-                str(len(here)),
-                _drawn_cell(here, lambda each: each.could, ".1f"),
-                _drawn_cell(here, lambda each: each.took, ".1f"),
-                _drawn_cell(here, lambda each: each.ego_gain_s, "+.1f"),
-                _drawn_cell(here, lambda each: each.took_gain_s, "+.1f"),
-                _drawn_cell(here, lambda each: each.rest_gain_s, "+.1f"),
-                _drawn_cell(here, lambda each: each.ego_gain_s + each.took_gain_s + each.rest_gain_s, "+.1f"),
-            )
+            {
+                "Share rerouting": f"{rerouting:.0%}",
+                "Rerouted with ego": f"{share:.0%}",
+                "Decisions": str(len(here)),
+                "Eligible": _drawn_cell(here, lambda each: each.could, ".1f"),
+                "Went": _drawn_cell(here, lambda each: each.took, ".1f"),
+                "Ego saves, s": _drawn_cell(here, lambda each: each.ego_gain_s, "+.1f"),
+                "Rerouted save, s": _drawn_cell(here, lambda each: each.took_gain_s, "+.1f"),
+                "The rest save, s": _drawn_cell(here, lambda each: each.rest_gain_s, "+.1f"),
+                "All save, s": _drawn_cell(
+                    here, lambda each: each.ego_gain_s + each.took_gain_s + each.rest_gain_s, "+.1f"
+                ),
+            }
         )
-    columns = (
-        "Share rerouting",
-        "Rerouted with ego",
-        "Decisions",
-        "Eligible",
-        "Went",
-        "Ego saves, s",
-        "Rerouted save, s",
-        "The rest save, s",
-        "All save, s",
-    )
     note = (
         "At the first decision of each drive with another route, whatever the news predicts: the ego takes it, and "
         "so does that share of the cars whose routes pass both ends of the section in which the two routes differ. "
@@ -144,23 +129,12 @@ def many(study: Study) -> Table:
     )
     if left_out:
         note += f"{counted(left_out, 'decision')} left out that did not arrive or clear in time at every share."
-    return Table("many", "When many cars take the other route", columns, tuple(rows), note, heads=2)
+    return Table.of("many", "When many cars take the other route", rows, note, heads=2)
 
 
 def closed(study: Study) -> Table:
     """The cost of closing a road at the fork."""
-    columns = (
-        "Share rerouting",
-        "Decisions",
-        "Excluded",
-        "Ego loses, s",
-        "On the other route, s",
-        "Other route saves, open, s",
-        "Other route saves, closed, s",
-        "Others lose, s",
-        "Others later",
-    )
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for share in sorted({row.share for row in study.rows}):
         points = [point for point in study.decisions if point.drive.share == share and point.decision.closed]
         kept = [
@@ -169,74 +143,66 @@ def closed(study: Study) -> Table:
             if not any(each.excluded for each in point.decision.closed)
         ]
         if points:
-            cells = [
-                told_mean(seed_mean((seed, fmean(map(of, draws))) for seed, draws in kept), "+.1f")
-                for of in _CLOSED
-            ]
-            rows.append((f"{share:.0%}", str(len(kept)), str(len(points) - len(kept)), *cells))
+            rows.append(
+                {
+                    "Share rerouting": f"{share:.0%}",
+                    "Decisions": str(len(kept)),
+                    "Excluded": str(len(points) - len(kept)),
+                    **{
+                        name: told_mean(seed_mean((seed, fmean(map(of, draws))) for seed, draws in kept), "+.1f")
+                        for name, of in _CLOSED.items()
+                    },
+                }
+            )
     note = (
         "At the first decision of each drive with another route, a road is closed on both routes (--close), and "
         "each is compared with the same route with it open. Cars with that road on their route make a detour. "
         "Others: if the ego keeps its route; later: by 1 s or more."
     )
-    return Table("closed", "When a road is closed at the fork", columns, tuple(rows), note)
+    return Table.of("closed", "When a road is closed at the fork", rows, note)
 
 
-_CLOSED: tuple[Callable[[Closed], float], ...] = (
-    lambda each: each.stay_loss_s,
-    lambda each: each.other_loss_s,
-    lambda each: each.open_gain_s,
-    lambda each: each.gain_s,
-    lambda each: each.others_loss_s,
-    lambda each: each.others_later,
-)
+_CLOSED: dict[str, Callable[[Closed], float]] = {
+    "Ego loses, s": lambda each: each.stay_loss_s,
+    "On the other route, s": lambda each: each.other_loss_s,
+    "Other route saves, open, s": lambda each: each.open_gain_s,
+    "Other route saves, closed, s": lambda each: each.gain_s,
+    "Others lose, s": lambda each: each.others_loss_s,
+    "Others later": lambda each: each.others_later,
+}
+
+
+QUANTILES = {"5 %": "low_s", "25 %": "lower_s", "Median": "median_s", "75 %": "upper_s", "95 %": "high_s"}
 
 
 def everyone(study: Study) -> Table:
     """How gains and losses are distributed over everyone."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for heads, found in rerouted(study):
         spreads = [spread for _, spread in found]
         rows.append(
-            (
-                *heads,
-                str(len(found)),
-                f"{fmean(each.count for each in spreads):.0f}",
-                _mean_cell(found, lambda each: each.mean_s, "+.2f"),
-                *(
-                    told(fmean(getattr(each, name) for each in spreads), "+.1f")
-                    for name in ("low_s", "lower_s", "median_s", "upper_s", "high_s")
-                ),
-                f"{sum(each.earlier for each in spreads) / sum(each.count for each in spreads):.0%}",
-                f"{sum(each.later for each in spreads) / sum(each.count for each in spreads):.0%}",
-                f"{fmean(each.gini_stay for each in spreads):.3f}",
-                told(fmean(each.gini - each.gini_stay for each in spreads), "+.4f"),
-            )
+            {
+                **named(heads),
+                "Reroutings": str(len(found)),
+                "Vehicles": f"{fmean(each.count for each in spreads):.0f}",
+                "Saved by one, s": _mean_cell(found, lambda each: each.mean_s, "+.2f"),
+                **{
+                    quantile: told(fmean(getattr(each, name) for each in spreads), "+.1f")
+                    for quantile, name in QUANTILES.items()
+                },
+                "Earlier": f"{sum(each.earlier for each in spreads) / sum(each.count for each in spreads):.0%}",
+                "Later": f"{sum(each.later for each in spreads) / sum(each.count for each in spreads):.0%}",
+                "Gini": f"{fmean(each.gini_stay for each in spreads):.3f}",
+                "Gini changes by": told(fmean(each.gini - each.gini_stay for each in spreads), "+.4f"),
+            }
         )
-    columns = (
-        "Share rerouting",
-        "Policy",
-        "News age, s",
-        "Reroutings",
-        "Vehicles",
-        "Saved by one, s",
-        "5 %",
-        "25 %",
-        "Median",
-        "75 %",
-        "95 %",
-        "Earlier",
-        "Later",
-        "Gini",
-        "Gini changes by",
-    )
     note = (
         "Over the decisions where the policy reroutes: what single vehicles save, the ego and all others that were "
         "there, each as its mean over the draws; quantiles are means over decisions. Earlier and later: share of "
         f"the vehicles that arrive at least {NOTICED_S:g} s earlier or later, chance included. Gini: of the times "
         "from the decision to the arrival if the ego keeps its route."
     )
-    return Table("everyone", "Who gains and who loses", columns, tuple(rows), note, heads=3)
+    return Table.of("everyone", "Who gains and who loses", rows, note, heads=3)
 
 
 def by_trip(study: Study) -> Table:
@@ -282,10 +248,20 @@ def horizons(study: Study) -> Table:
     return Table("horizons", "The others, by horizon", columns, tuple(rows), note, heads=3)
 
 
+SAVED = (
+    ("CO2", "g", "+.0f"),
+    ("NOx", "g", "+.2f"),
+    ("Fuel", "g", "+.0f"),
+    ("Electricity", "Wh", "+.1f"),
+    ("Noise", "s", "+.0f"),
+)
+"""What is told of ``CONSUMED``."""
+
+
 def fleet(study: Study) -> Table:
     """How much less everyone emits and consumes, by emission class."""
     decisions = {point.id: point.decision for point in study.decisions}
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for heads, found in rerouted(study):
         by_class: dict[str, list[tuple[int, list[FleetClass]]]] = {}
         for choice, _ in found:
@@ -296,31 +272,27 @@ def fleet(study: Study) -> Table:
                 same = [part for part in parts if part.emission_class == name]
                 by_class.setdefault(name, []).append((choice.seed, same))
         for name, here in sorted(by_class.items()):
-            cells = [
-                told_mean(seed_mean((seed, _mean_of(parts, what)) for seed, parts in here), form)
-                for what, form in zip(CONSUMED, ("+.0f", "+.2f", "+.0f", "+.1f", "+.0f"), strict=True)
-            ]
             vehicles = fmean(part.count for _, parts in here for part in parts)
-            rows.append((*heads, name, f"{vehicles:.0f}", *cells))
-    columns = (
-        "Share rerouting",
-        "Policy",
-        "News age, s",
-        "Emission class",
-        "Vehicles",
-        "CO2 saved, g",
-        "NOx saved, g",
-        "Fuel saved, g",
-        "Electricity saved, Wh",
-        "Noise saved, s",
-    )
+            rows.append(
+                {
+                    **named(heads),
+                    "Emission class": name,
+                    "Vehicles": f"{vehicles:.0f}",
+                    **{
+                        f"{what} saved, {unit}": told_mean(
+                            seed_mean((seed, _mean_of(parts, figure)) for seed, parts in here), form
+                        )
+                        for (what, unit, form), figure in zip(SAVED, CONSUMED, strict=True)
+                    },
+                }
+            )
     note = (
         "Sums over the vehicles of the class that arrived with either route, per decision in which the policy "
         "reroutes. Classes are those that the demand's vehicle types declare (emissionClass), else SUMO's own for "
         "the kind of vehicle; ego_class of the plan declares the ego's. Noise is sound energy at the vehicles "
         "(Harmonoise), as seconds of a car at 50 km/h, 65 dB(A)."
     )
-    return Table("fleet", "Emissions and consumption of everyone", columns, tuple(rows), note, heads=4)
+    return Table.of("fleet", "Emissions and consumption of everyone", rows, note, heads=4)
 
 
 def _mean_of(parts: Sequence[FleetClass], what: str) -> float:

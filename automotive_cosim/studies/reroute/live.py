@@ -18,7 +18,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.formats.layout import LIVE, ROAD, STEPS, WATCHED
 from automotive_cosim.formats.writing import add_line, growing, is_being_written, make_folder, remove
 from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter
-from automotive_cosim.run.words import limit_kmh
+from automotive_cosim.run.timeline import limit_kmh
 from automotive_cosim.studies.reroute.compare import Future
 from automotive_cosim.studies.reroute.data import choosers
 from automotive_cosim.studies.reroute.decisions import told

@@ -7,7 +7,7 @@ from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.writing import write_whole
-from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.report.tables import Table, TableRecord
 from automotive_cosim.studies.reroute.demand import read_demand
 from automotive_cosim.studies.reroute.effects import rerouted
 from automotive_cosim.studies.reroute.page import cost_s
@@ -26,7 +26,7 @@ def folder_name(number: int, scenario: str) -> str:
 
 def networks(studies: Sequence[Study]) -> Table:
     """One row per network, warm-up and share of rerouting cars, with the newest news of its plan."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for study in studies:
         edges = len(read_network(read_configuration(study.plan.opened.config).net).edges)
         spent_s = cost_s(study)
@@ -37,43 +37,28 @@ def networks(studies: Sequence[Study]) -> Table:
             running = [summary.running for summary in summaries if summary is not None]
             gaps = [each.gap for each in read_demand(study.folder) if each.share == share]
             rows.append(
-                (
-                    study.plan.opened.name,
-                    f"{study.plan.scene(share).sumo.warm_up_s:g}",
-                    f"{share:.0%}",
-                    f"{edges:,}",
-                    f"{fmean(running):.0f}" if running else NONE,
-                    str(len({each.id for each in here})),
-                    mean_cell(always, time_saved_s),
-                    mean_cell((each for each in here if each.policy == "best"), time_saved_s),
-                    mean_cell(always, others_save_s, 0),
-                    _later(study, always),
-                    f"{study.noise().time_s:.1f}",
-                    f"{gaps[0].relative:.1%}" if gaps and gaps[0] is not None else NONE,
-                    NONE if spent_s is None else f"{spent_s:.1f}",
-                )
+                {
+                    "Network": study.plan.opened.name,
+                    "Warm-up, s": f"{study.plan.scene(share).sumo.warm_up_s:g}",
+                    "Share rerouting": f"{share:.0%}",
+                    "Edges": f"{edges:,}",
+                    "Vehicles on the road": f"{fmean(running):.0f}" if running else NONE,
+                    "Decisions": str(len({each.id for each in here})),
+                    "Always saves, s": mean_cell(always, time_saved_s),
+                    "Best saves, s": mean_cell((each for each in here if each.policy == "best"), time_saved_s),
+                    "Others save, s": mean_cell(always, others_save_s, 0),
+                    "Later": _later(study, always),
+                    "Noise floor, s": f"{study.noise().time_s:.1f}",
+                    "Demand gap": f"{gaps[0].relative:.1%}" if gaps and gaps[0] is not None else NONE,
+                    "s per decision": NONE if spent_s is None else f"{spent_s:.1f}",
+                }
             )
-    columns = (
-        "Network",
-        "Warm-up, s",
-        "Share rerouting",
-        "Edges",
-        "Vehicles on the road",
-        "Decisions",
-        "Always saves, s",
-        "Best saves, s",
-        "Others save, s",
-        "Later",
-        "Noise floor, s",
-        "Demand gap",
-        "s per decision",
-    )
     note = (
         "Always and best: seconds saved per decision that counts, with 95 % intervals if there are enough "
         "seeds. Others save and later (share of the vehicles that arrive at least 1 s later): when the ego always "
         "reroutes. Seconds per decision: wall time of one worker."
     )
-    return Table("networks", "The same study on several networks", columns, tuple(rows), note, heads=3)
+    return Table.of("networks", "The same study on several networks", rows, note, heads=3)
 
 
 def sentence(studies: Sequence[Study]) -> str:

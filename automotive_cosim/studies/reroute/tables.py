@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.report.tables import Table, TableRecord, TableRow
 from automotive_cosim.run.row import JobRow, remedy
 from automotive_cosim.studies.calls.chance import Fresh
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
@@ -56,46 +56,33 @@ def goes_by_news(policy: str) -> bool:
 def policies(study: Study) -> Table:
     """What each policy gained for the ego."""
     floor = study.noise()
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for share, policy, age_s, chosen in groups(study):
         outcome = " / ".join(f"{count:.0f}" for count in outcomes(chosen, floor))
         if study.plan.replicates == 1 and floor.placebos and not floor.is_known:
             outcome = NONE  # nothing tells a win from chance
         rows.append(
-            (
-                f"{share:.0%}",
-                policy,
-                f"{age_s:g}" if goes_by_news(policy) else NONE,
-                str(len(chosen)),
-                str(len({each.seed for each in chosen})),
-                per_cent(each.rerouted for each in chosen),
-                mean_cell(chosen, time_saved_s),
-                resampled_cell(chosen, time_saved_s),
-                outcome,
-                share_of(_chose_better(each, floor) for each in chosen),
-                mean_cell(chosen, lambda each: each.regret_s),
-            )
+            {
+                "Share rerouting": f"{share:.0%}",
+                "Policy": policy,
+                "News age, s": f"{age_s:g}" if goes_by_news(policy) else NONE,
+                "Decisions": str(len(chosen)),
+                "Seeds": str(len({each.seed for each in chosen})),
+                "Rerouted": per_cent(each.rerouted for each in chosen),
+                "Time saved, s": mean_cell(chosen, time_saved_s),
+                "Resampled, s": resampled_cell(chosen, time_saved_s),
+                "Won / tied / lost": outcome,
+                "Chose the better route": share_of(_chose_better(each, floor) for each in chosen),
+                "Regret, s": mean_cell(chosen, lambda each: each.regret_s),
+            }
         )
-    columns = (
-        "Share rerouting",
-        "Policy",
-        "News age, s",
-        "Decisions",
-        "Seeds",
-        "Rerouted",
-        "Time saved, s",
-        "Resampled, s",
-        "Won / tied / lost",
-        "Chose the better route",
-        "Regret, s",
-    )
     note = (
         "Over all decisions that count; where the policy keeps the route, the gain is 0. In brackets: 95 % t "
         f"intervals with a standard error over seeds, from {LEAST_SEEDS} seeds; resampled: from resampling "
         f"whole seeds. {_how_judged(study, floor)} Where the difference is chance, both routes count as the better "
         "one, so shares of two policies may add up to more than 100 %."
     )
-    return Table("policies", "What each policy saved the ego", columns, tuple(rows), note, heads=3)
+    return Table.of("policies", "What each policy saved the ego", rows, note, heads=3)
 
 
 def _how_judged(study: Study, floor: Noise) -> str:
@@ -119,81 +106,59 @@ def _how_judged(study: Study, floor: Noise) -> str:
 
 def parts(study: Study) -> Table:
     """What the time saved consists of."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for share, policy, age_s, chosen in groups(study):
         if policy in STAYING or any(each.gain.lost_s is None or each.lost_ahead_s is None for each in chosen):
             continue
         rows.append(
-            (
-                f"{share:.0%}",
-                policy,
-                f"{age_s:g}" if goes_by_news(policy) else NONE,
-                mean_cell(chosen, time_saved_s),
-                mean_cell(chosen, lambda each: each.gain.lost_s or 0.0),
-                mean_cell(chosen, lambda each: each.gain.way_s or 0.0),
-                mean_cell(chosen, lambda each: each.delay_s, signed=False),
-                mean_cell(chosen, lambda each: each.lost_ahead_s or 0.0, signed=False),
-                str(len({each.trip for each in chosen})),
-            )
+            {
+                "Share rerouting": f"{share:.0%}",
+                "Policy": policy,
+                "News age, s": f"{age_s:g}" if goes_by_news(policy) else NONE,
+                "Time saved, s": mean_cell(chosen, time_saved_s),
+                "Congestion avoided, s": mean_cell(chosen, lambda each: each.gain.lost_s or 0.0),
+                "Way saved, s": mean_cell(chosen, lambda each: each.gain.way_s or 0.0),
+                "Delay ahead, s": mean_cell(chosen, lambda each: each.delay_s, signed=False),
+                "Lost on the kept route, s": mean_cell(chosen, lambda each: each.lost_ahead_s or 0.0, signed=False),
+                "Trips": str(len({each.trip for each in chosen})),
+            }
         )
-    columns = (
-        "Share rerouting",
-        "Policy",
-        "News age, s",
-        "Time saved, s",
-        "Congestion avoided, s",
-        "Way saved, s",
-        "Delay ahead, s",
-        "Lost on the kept route, s",
-        "Trips",
-    )
     note = (
         "Time saved = congestion avoided + way saved, decision by decision. Congestion avoided: SUMO's time loss "
         "on the kept route less that on the other, signals included. Way saved: the time that each takes on an "
         "empty road, as fast as limits and driver allow. Delay ahead: expected at the decision, at present speeds; "
         "lost: what the kept route really lost from there on."
     )
-    return Table("parts", "What the time saved consists of", columns, tuple(rows), note, heads=3)
+    return Table.of("parts", "What the time saved consists of", rows, note, heads=3)
 
 
 def costs(study: Study) -> Table:
     """Other effects, on the ego and on all other vehicles."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     for share, policy, age_s, chosen in groups(study):
         if policy in STAYING:
             continue
         rows.append(
-            (
-                f"{share:.0%}",
-                policy,
-                f"{age_s:g}" if goes_by_news(policy) else NONE,
-                mean_cell(chosen, lambda each: each.gain.distance_m, 0),
-                mean_cell(chosen, lambda each: each.gain.stops, 2),
-                mean_cell(chosen, lambda each: each.gain.co2_g),
-                mean_cell(chosen, lambda each: each.gain.fuel_g),
-                mean_cell(chosen, others_save_s),
-                f"{sum(each.unfinished_stay for each in chosen):.0f} / "
+            {
+                "Share rerouting": f"{share:.0%}",
+                "Policy": policy,
+                "News age, s": f"{age_s:g}" if goes_by_news(policy) else NONE,
+                "Distance saved, m": mean_cell(chosen, lambda each: each.gain.distance_m, 0),
+                "Stops saved": mean_cell(chosen, lambda each: each.gain.stops, 2),
+                "CO2 saved, g": mean_cell(chosen, lambda each: each.gain.co2_g),
+                "Fuel saved, g": mean_cell(chosen, lambda each: each.gain.fuel_g),
+                "Others save, s": mean_cell(chosen, others_save_s),
+                "Unfinished": f"{sum(each.unfinished_stay for each in chosen):.0f} / "
                 f"{sum(each.unfinished for each in chosen):.0f}",
-            )
+            }
         )
-    columns = (
-        "Share rerouting",
-        "Policy",
-        "News age, s",
-        "Distance saved, m",
-        "Stops saved",
-        "CO2 saved, g",
-        "Fuel saved, g",
-        "Others save, s",
-        "Unfinished",
-    )
     note = (
         "Means over decisions; negative values are costs. CO2 and fuel by SUMO's emission model. Others: "
         "the sum over every vehicle on the road or due at the decision, departure delay included, until the "
         f"ego and {study.plan.arrived:.0%} of them had arrived with one of the two routes; the rest counts up to "
         "that instant. Unfinished: the number of the latter, if the ego keeps its route / as the policy chooses."
     )
-    return Table("costs", "Other effects", columns, tuple(rows), note, heads=3)
+    return Table.of("costs", "Other effects", rows, note, heads=3)
 
 
 def by_congestion(study: Study) -> Table:
@@ -257,30 +222,22 @@ def needs_driver(policy: str) -> bool:
 
 def by_share(study: Study) -> Table:
     """Time saved by the share of other cars that reroute; each share's traffic was warmed up separately."""
-    rows: list[TableRow] = []
+    rows: list[TableRecord] = []
     shares = sorted({each.share for each in study.choices})
     for share in shares if len(shares) > 1 else ():
         here = [each for each in study.choices if (each.share, each.age_s) == (share, study.plan.ages_s[0])]
         never, always, best = ([each for each in here if each.policy == p] for p in ("never", "always", HINDSIGHT))
         rows.append(
-            (
-                f"{share:.0%}",
-                str(len({each.id for each in here})),
-                mean_cell(never, lambda each: each.stay.time_s, 0, signed=False),
-                mean_cell(always, time_saved_s),
-                mean_cell(best, time_saved_s),
-                mean_cell(always, others_save_s),
-            )
+            {
+                "Share rerouting": f"{share:.0%}",
+                "Decisions": str(len({each.id for each in here})),
+                "Keeping the route takes, s": mean_cell(never, lambda each: each.stay.time_s, 0, signed=False),
+                "Always saves, s": mean_cell(always, time_saved_s),
+                "Best saves, s": mean_cell(best, time_saved_s),
+                "Others save, s": mean_cell(always, others_save_s),
+            }
         )
-    columns = (
-        "Share rerouting",
-        "Decisions",
-        "Keeping the route takes, s",
-        "Always saves, s",
-        "Best saves, s",
-        "Others save, s",
-    )
-    return Table("by_share", "By the share of cars that reroute", columns, tuple(rows), stops_helping(study))
+    return Table.of("by_share", "By the share of cars that reroute", rows, stops_helping(study))
 
 
 def stops_helping(study: Study) -> str:

@@ -20,7 +20,6 @@ def write_tracks(folder: Path, drive_id: str, stay: Future, points: Sequence[Poi
     """Writes all futures of a drive from their decisions on, as gzipped CSV.
 
     Args:
-        drive_id: name of the file.
         stay: the drive itself, in which the ego keeps its route.
 
     Raises OSError: it cannot be written."""

@@ -18,7 +18,7 @@ import numpy as np
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.run.phase import doing
+from automotive_cosim.run.executor import doing
 from automotive_cosim.studies.calls.accounts import TrafficSummary
 from automotive_cosim.studies.calls.chance import fresh_of
 from automotive_cosim.studies.calls.divert import section

@@ -98,7 +98,6 @@ def incidents(state: State, *, besides_jam: bool = False) -> tuple[tuple[Inciden
     """Incidents last reported by live traffic: kind, and where a driver meets them.
 
     Args:
-        state: the cockpit's state.
         besides_jam: whether to omit jams on the route, of which the next has a mark of its own.
     """
     if state.heard is None:
