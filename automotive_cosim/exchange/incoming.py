@@ -132,8 +132,8 @@ def _turn_back(net: ET.Element) -> None:
 
 
 def _for_netconvert(source: Path, ours: Path) -> tuple[bool, dict[str, bool]]:
-    """Makes a file of roads one that netconvert reads rightly; returns whether they keep left, and whether each lane,
-    by road and number, has a limit wherever it is.
+    """Makes a file of roads one that netconvert reads rightly; returns whether they keep left, and whether each
+    lane, by road and number, has a limit wherever it is.
 
     It reads no rule: roads that keep left become their mirror image, which keeps right. It reads limits of lanes
     alone, and forgets who may use a lane where its limit changes. What OpenDRIVE 1.8 says of users it refuses.
