@@ -23,14 +23,25 @@ REMOVE_S, LATER_S = 1.0, 600.0
 """Wall time to remove its folder before anything else goes on, and beside what goes on. What is left then stays in
 the system's folder for temporary files."""
 POLL_S = 0.002
-PR_SET_CHILD_SUBREAPER = 36
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 """Of Linux's prctl."""
 
 
 def take_orphans() -> None:
     """From now on, orphans among this process's descendants become its children (on Linux)."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    _prctl(PR_SET_CHILD_SUBREAPER, 1)
+
+
+def end_with_parent() -> None:
+    """From now on, this process is killed when the thread that started it ends (on Linux)."""
+    _prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def how_it_ended(code: int) -> str:
+    """The end of a process by its exit code, which is negative after a signal."""
+    if code < 0:
+        return f"its process was killed by {signal.Signals(-code).name}"
+    return f"its process exited with code {code}"
 
 
 def children(pid: int | str = "self") -> list[int]:
@@ -140,3 +151,9 @@ def _listed(folder: Path) -> Iterator[Path]:
 
 def _is_folder(path: Path) -> bool:
     return path.is_dir() and not path.is_symlink()
+
+
+def _prctl(option: int, value: int) -> None:
+    """Linux's prctl; nothing elsewhere."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(option, value, 0, 0, 0)

@@ -123,6 +123,9 @@ def own_class(spec: str, what: str) -> type:
     here = str(Path.cwd())
     if here not in sys.path:
         sys.path.insert(0, here)
+    if "/" in module_name:
+        file = module_name.rpartition("/")[2].removesuffix(".py")
+        raise UserError(f"{what} {spec!r}: run the command in the folder of its file and give {file}:{class_name}")
     if module_name.endswith(".py"):
         raise UserError(f"{what} {spec!r}: omit the .py, as in {module_name.removesuffix('.py')}:{class_name}")
     try:

@@ -35,15 +35,20 @@ from typing import NoReturn
 import numpy as np
 
 from automotive_cosim.agents import Agent, AgentSettings, Thinker, make_agent
-from automotive_cosim.agents.cleanup import POLL_S, children, end_all, remove, take_orphans
+from automotive_cosim.agents.cleanup import (
+    POLL_S,
+    children,
+    end_all,
+    end_with_parent,
+    how_it_ended,
+    remove,
+    take_orphans,
+)
 from automotive_cosim.agents.wire import GoneError, Wire
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.errors import ActionError, CosimError, OutOfBudgetError
 from automotive_cosim.models import ChatMessage, ModelReply
-
-PR_SET_PDEATHSIG = 1
-"""Of Linux's prctl."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +116,7 @@ class _AgentServer:
         if not agent:
             self._wire.close()
             os.setsid()
-            _prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+            end_with_parent()
             if os.getppid() != fork_server:  # it ended before this one could be told
                 os._exit(1)
             with suppress(OSError):  # should memory run out, this goes first, and not the traffic or the worker
@@ -140,7 +145,7 @@ class _AgentServer:
         how, end_s = "", time.monotonic() + grace_s
         while not how and time.monotonic() < end_s:
             ended, status = os.waitpid(agent, os.WNOHANG)
-            how = _how(os.waitstatus_to_exitcode(status)) if ended else ""
+            how = how_it_ended(os.waitstatus_to_exitcode(status)) if ended else ""
             time.sleep(0.0 if ended else POLL_S)
         with suppress(ProcessLookupError, PermissionError):
             os.killpg(agent, signal.SIGKILL)
@@ -218,20 +223,6 @@ def _session(pid: int) -> int | None:
 
 def _told(error: BaseException) -> str:
     return f"it raised {type(error).__name__}: {error}"
-
-
-def _how(code: int) -> str:
-    if code < 0:
-        return f"its process was killed by {signal.Signals(-code).name}"
-    return f"its process exited with code {code}"
-
-
-def _prctl(option: int, value: int) -> None:
-    """Linux's prctl; nothing elsewhere."""
-    if sys.platform == "linux":
-        import ctypes
-
-        ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
 
 
 def main() -> None:

@@ -332,6 +332,7 @@ def cli(
     """Runs ``automotive-cosim`` in an empty folder."""
     lent = SimpleNamespace(start=fork_server.start, end=fork_server.end, close=lambda: None)
     monkeypatch.setattr("automotive_cosim.run.outside.ForkServer", lambda: lent)
+    monkeypatch.setattr("automotive_cosim.cli.main.watched", lambda work: work())
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("AUTOMOTIVE_COSIM_DEBUG", raising=False)
     terminated = signal.getsignal(signal.SIGTERM)

@@ -6,6 +6,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from itertools import groupby
 
 from rich.console import RenderableType
 from rich.live import Live as Display
@@ -99,6 +100,8 @@ class Live(TrialObserver):
         self._title = "starting"
         self._goal = ""
         self._action = ""
+        self._is_lost = False
+        """Whether the last answer was no action."""
         self._thought = ""
         self._hand_over_s: float | None = None
         self._said_s: float | None = None
@@ -158,7 +161,8 @@ class Live(TrialObserver):
 
     def stepped(self, shot: Shot) -> None:
         """The last action and the agent's reason."""
-        step = shot.step
+        step, was_lost = shot.step, self._is_lost
+        self._is_lost = step.action is None
         self._waiting.stop()
         self._action = f"{step.number}  {action_in_words(step.action, shot.seen)}"
         self._thought = shot.thought
@@ -168,6 +172,8 @@ class Live(TrialObserver):
             self._title = "after the end: the drive continues"
         if self._console.is_terminal:
             self._show(self._panel(step.moment))
+        elif was_lost and self._is_lost:
+            self._wait()  # the number of such steps is told at the end, with the reason
         else:
             because = f" ({self._thought})" if self._thought else ""
             began = self._begins or step.moment
@@ -273,5 +279,8 @@ def _verdict(row: EpisodeRow, result: EpisodeResult) -> list[Text]:
             Text.assemble(f"  {'policy':<9} ", ("no ", "red"), "  ", (f"{rule}, after {at_s:.0f} s", "dim"))
         )
     lines.append(Text())
-    lines += [Text.assemble((f"{entry.at_s:+8.1f} s", "dim"), f"  {entry.text}") for entry in result.timeline]
+    for text, alike in groupby(result.timeline, key=lambda entry: entry.text):
+        first, *more = alike
+        times = f", {len(more) + 1} times until {more[-1].at_s:+.1f} s" if more else ""
+        lines.append(Text.assemble((f"{first.at_s:+8.1f} s", "dim"), f"  {text}{times}"))
     return lines

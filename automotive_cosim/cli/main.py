@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import io
 import os
+import re
 import signal
 import sys
 import threading
@@ -24,6 +25,7 @@ import typer
 import automotive_cosim
 from automotive_cosim.cli import CONTENTS, READ, RUN, TOOLS
 from automotive_cosim.cli.terminal import discard_output, json_alone, open_streams, plain_streams
+from automotive_cosim.cli.watched import watched
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.plain import plain
 from automotive_cosim.run.extensions import extensions
@@ -75,6 +77,8 @@ COMMANDS = (
 besides their own. Extensions add more."""
 LIST = "--help"
 """Asked for without a command: the list of all."""
+OWN_AGENT = re.compile(r"^run .*--agent[ =](?!a2a:)\S+:")
+"""A command line whose process someone else's code shares."""
 SIGNED = "show context"
 """Its arguments may be negative numbers."""
 
@@ -187,11 +191,16 @@ def main() -> None:
             stream.reconfigure(errors="replace")
     words = set(sys.argv)
     asks_json = "--json" in words and not {"-h", "--help"} & words
-    with json_alone() if asks_json else nullcontext(), plain_streams():
+
+    def ended() -> int:
         code = _run()
-        if code == INTERRUPTED:
-            print("error: interrupted", file=sys.stderr)
-            code = TERMINATED if terminations else INTERRUPTED
+        if code != INTERRUPTED:
+            return code
+        print("error: interrupted", file=sys.stderr)
+        return TERMINATED if terminations else INTERRUPTED
+
+    with json_alone() if asks_json else nullcontext(), plain_streams():
+        code = watched(ended) if OWN_AGENT.search(" ".join(sys.argv[1:])) else ended()
     sys.exit(code)
 
 

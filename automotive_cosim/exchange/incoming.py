@@ -30,7 +30,7 @@ from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import copy, write_whole
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
-from automotive_cosim.traffic.network import read_network
+from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS, open_to, read_network
 from automotive_cosim.traffic.script import EGO as THE_EGO
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
@@ -108,24 +108,32 @@ def road_network(source: Path, folder: Path) -> Any:
     ours = "road.xodr" if source.suffix == ".xodr" else f"{NET}.gz"
     words = ("-s", ours) if source.suffix != ".xodr" else (f"--opendrive-files={ours}", "--output.original-names")
     copy(source, folder / ours, bounds.UNPACKED_BYTES)
-    keeps_left = source.suffix == ".xodr" and _for_netconvert(source, folder / ours)
+    keeps_left, limits = _for_netconvert(source, folder / ours) if source.suffix == ".xodr" else (False, {})
     ok, printed = run("netconvert", (*words, "--offset.disable-normalization", "-o", NET), folder)
     if not ok:
         raise ScenarioError(f"netconvert cannot read {source}: {first_error(printed)}")
-    if keeps_left:
+    if limits:
         root = ET.parse(folder / NET).getroot()
-        mirror(root)
-        root.set("lefthand", "true")
-        for location in root.iter("location"):
-            for name in ("convBoundary", "origBoundary"):
-                x, y, x_most, y_most = location.attrib[name].split(",")
-                location.set(name, f"{x},{-float(y_most):.2f},{x_most},{-float(y):.2f}")
+        _mark_stated(root, limits)
+        if keeps_left:
+            _turn_back(root)
         write_whole(folder / NET, ET.tostring(root, encoding="UTF-8", xml_declaration=True))
     return sumolib.net.readNet(str(folder / NET), withInternal=False)
 
 
-def _for_netconvert(source: Path, ours: Path) -> bool:
-    """Makes a file of roads one that netconvert reads rightly; returns whether they keep left.
+def _turn_back(net: ET.Element) -> None:
+    """Makes a network of roads that were mirrored one that keeps left."""
+    mirror(net)
+    net.set("lefthand", "true")
+    for location in net.iter("location"):
+        for name in ("convBoundary", "origBoundary"):
+            x, y, x_most, y_most = location.attrib[name].split(",")
+            location.set(name, f"{x},{-float(y_most):.2f},{x_most},{-float(y):.2f}")
+
+
+def _for_netconvert(source: Path, ours: Path) -> tuple[bool, dict[str, bool]]:
+    """Makes a file of roads one that netconvert reads rightly; returns whether they keep left, and whether each
+    lane, by road and number, has a limit wherever it is.
 
     It reads no rule: roads that keep left become their mirror image, which keeps right. It reads limits of lanes
     alone, and forgets who may use a lane where its limit changes. What OpenDRIVE 1.8 says of users it refuses.
@@ -141,7 +149,23 @@ def _for_netconvert(source: Path, ours: Path) -> bool:
     if keeps_left:
         mirror(root)
     write_whole(ours, ET.tostring(root))
-    return keeps_left
+    stated: dict[str, bool] = {}
+    for element in root.iter("road"):
+        for lane in element.iterfind("lanes/laneSection/*/lane"):
+            name = f"{element.attrib['id']}_{lane.attrib['id']}"
+            stated[name] = stated.get(name, True) and any(_offset_m(each) == 0 for each in lane.iter("speed"))
+    return keeps_left, stated
+
+
+def _mark_stated(net: ET.Element, stated: Mapping[str, bool]) -> None:
+    """Marks the limits of a network's edges that the roads' file states: they are posted, the others assumed."""
+    for edge in net.iterfind("edge[lane]"):
+        lanes = [lane for lane in edge.iterfind("lane") if open_to(lane.attrib)]
+        names = [each.get("value", "") for lane in lanes for each in lane.iterfind("param[@key='origId']")]
+        if names and all(stated.get(each) for name in names for each in name.split()):
+            fastest_mps = max(float(lane.attrib["speed"]) for lane in lanes)
+            told = "none" if fastest_mps >= NO_LIMIT_FROM_MPS else f"{fastest_mps * KMH_PER_MPS:.4g}"
+            ET.SubElement(edge, "param", key="maxspeed", value=told)
 
 
 def _tell_limits(element: ET.Element, road: OpenDriveRoad) -> None:

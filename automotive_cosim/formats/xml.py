@@ -104,6 +104,8 @@ def scan(
     except FileNotFoundError as broken:
         raise error(f"{path} is missing") from broken
     except (expat.ExpatError, OSError, ValueError, LookupError) as broken:
+        if getattr(broken, "filename", None) not in (None, path, str(path)):
+            raise  # of the copy that is being written, on a full disk
         hint = ""
         if encoding == "utf-8" and getattr(broken, "code", 0) == INVALID_TOKEN and not is_utf8(path):
             hint = f"; it is not UTF-8: save it so, or let it begin with {LATIN_1}"

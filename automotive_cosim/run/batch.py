@@ -48,16 +48,16 @@ STILLBORN = 3
 
 @dataclass(frozen=True, slots=True)
 class Progress(Generic[R]):
-    """The progress of a run."""
+    """The progress of a run, counted in rows: a fleet has one for each car."""
 
     planned: int
     done: int
-    """Jobs that need no further run, including those of earlier starts."""
+    """Those that need no further run, including those of earlier starts."""
     judged: int
     successes: int
     errors: int
     ran: int
-    """Jobs that ended since this start."""
+    """Those that ended since this start."""
     seconds: float
     """Wall time since this start."""
     left_s: float | None
@@ -239,7 +239,7 @@ class _RowCounts:
     successes: int = 0
     errors: int = 0
     closed: int = 0
-    """Rows of jobs that need no further run."""
+    """Rows that need no further run."""
 
     def count(self, row: JobRow | None, by: int = 1) -> None:
         if row is not None:
@@ -285,7 +285,8 @@ class _Batch(Generic[J, R]):
         for job in jobs:
             situation, row = job.situation, self._row(job)
             self._alike[situation].append(job)
-            self._counts.count(row)
+            for each in self._rows(job):
+                self._counts.count(each)
             if row is not None and not is_open(row):
                 tried.add(situation)
                 if row.error is None:
@@ -308,8 +309,11 @@ class _Batch(Generic[J, R]):
 
     def _row(self, job: J) -> R | None:
         """Its row; of several, one for which it must run again, if there is any."""
-        rows = [self._store.rows.get(each) for each in job.row_ids]
+        rows = self._rows(job)
         return next(filter(is_open, rows), rows[0])
+
+    def _rows(self, job: J) -> list[R | None]:
+        return [self._store.rows.get(each) for each in job.row_ids]
 
     def close(self) -> None:
         for place in self._places:
@@ -320,7 +324,7 @@ class _Batch(Generic[J, R]):
     def progress(self) -> Progress[R]:
         counts, spent = self._counts, None if self._limit is None else self._limit.spent()
         return Progress(
-            planned=len(self._jobs),
+            planned=sum(len(job.row_ids) for job in self._jobs.values()),
             done=counts.closed + self._given_up,
             judged=counts.judged,
             successes=counts.successes,
@@ -424,11 +428,13 @@ class _Batch(Generic[J, R]):
                 return
         attempts = len(failures) + (row.error is None)
         self._newest = replace(row, attempts=attempts, failed_attempts=tuple(failures))
-        self._counts.count(self._row(job), -1)
-        self._counts.count(self._newest)
+        for old in self._rows(job):
+            self._counts.count(old, -1)
         self._store.append(self._newest)
-        self._ran += 1
-        self._given_up += is_open(row)
+        for new in self._rows(job):
+            self._counts.count(new)
+        self._ran += len(job.row_ids)
+        self._given_up += sum(map(is_open, self._rows(job)))
         self._tell(self.progress)
         self._give_up_like(job, row)
 

@@ -6,6 +6,7 @@ agent's; elsewhere nobody is told.
 
 from __future__ import annotations
 
+import errno
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -84,13 +85,20 @@ Opener = Callable[[], AbstractContextManager[Runner[J, R]]]
 """Makes a worker's runner; it is sent to the worker, so it must be a module's function or a partial of one."""
 
 
+FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS})
+
+
 def failed(job: Job, kind: str, why: str) -> Any:
     """The row of a job that ended in an infrastructure error."""
     return replace(job.planned(), error=why, error_kind=kind)
 
 
 def failed_by(job: Job, error: Exception) -> Any:
-    """The same by an error, of which a fault in this package or in an agent is told by its class too."""
+    """The same by an error, of which a fault in this package or in an agent is told by its class too.
+
+    Raises OSError: the disk is full. All others would end so, some of them after they have asked a model."""
+    if isinstance(error, OSError) and error.errno in FULL:
+        raise error
     name = type(error).__name__
     return failed(job, name, str(error) if isinstance(error, CosimError) else f"{name}: {error}")
 

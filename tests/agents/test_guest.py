@@ -95,6 +95,7 @@ def test_a_broken_one_is_told_what_is_missing(module, text, said):
         ("my_agents", r"did you mean my_agents:Cautious\?"),
         ("my_agents.py", r"did you mean my_agents:Cautious\?"),
         ("my_agents.py:Cautious", "omit the .py, as in my_agents:Cautious"),
+        ("code/my_agents.py:Cautious", "run the command in the folder of its file and give my_agents:Cautious"),
     ],
 )
 def test_a_forgotten_class_and_a_needless_suffix_are_told(tmp_path, monkeypatch, name, said):

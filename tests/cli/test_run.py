@@ -180,3 +180,16 @@ def test_an_agent_that_gives_no_action_is_told_with_the_reason(cli, tmp_path, ac
     ran = cli("run", *more, *GRID, "--agent", f"{name}:Agent", "--out", "out", "--most", "steps=2")
     (line,) = [line for line in getattr(ran, told).splitlines() if said in line]
     assert "gave no action in 2 steps, at first: " in line
+    assert ran.out.count("gives no action") == (0 if more else 2)  # once as it runs and once afterwards
+
+
+@pytest.mark.parametrize("act", ["os._exit(0)", "os.kill(os.getpid(), signal.SIGSEGV)"])
+def test_an_agent_that_ends_the_process_of_its_run_is_told(program, tmp_path, act):
+    (tmp_path / "ends.py").write_text(
+        f"import os, signal\nclass Agent:\n    def reset(self, goal): ...\n    def act(self, seen): {act}\n"
+    )
+    words = (*PROGRAM, "run", "--json", *GRID, "--agent", "ends:Agent")
+    run = program(*words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    out, told = run.communicate(timeout=240)
+    assert (run.returncode, out) == (2, "")
+    assert "error: the agent's code ended the run: its process " in told

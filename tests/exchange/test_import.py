@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+import re
 from datetime import datetime
 
 import pytest
 
+from automotive_cosim.contracts import LimitSource
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.exchange.incoming import import_openscenario, road_network
+from automotive_cosim.exchange.incoming import NET, import_openscenario, road_network
 from automotive_cosim.exchange.opendrive import write_opendrive
 from automotive_cosim.formats.incidents import VehicleAction
 from automotive_cosim.scenarios import load, open_scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.traffic.network import DERESTRICTED_MPS
+from automotive_cosim.traffic.network import DERESTRICTED_MPS, read_network
 from automotive_cosim.traffic.options import read_configuration
 from automotive_cosim.traffic.sumo_programs import run
 
@@ -225,6 +227,19 @@ def test_the_limits_of_a_road_are_those_of_its_lanes_that_state_none(rule, tmp_p
         return [limits[max(at_m for at_m in limits if at_m <= each)] for each in range(5, 600, 10)]
 
     assert seen(limits_mps) == pytest.approx(seen(told), abs=0.01)
+    read = [read_network(tmp_path / NET).edges[edge.getID()] for edge in edges]
+    assert {each.limit_source for each in read} == {LimitSource.POSTED}
+    assert [each.edge_id for each in read if each.limit_mps is None] == [edges[-1].getID()]
+
+
+def test_a_limit_that_a_road_does_not_state_is_assumed(tmp_path, sumo):
+    own = LIMITED.format(0, '<speed sOffset="0" max="20"/>', side="right", sign="-")
+    rest = LIMITED.format(300, '<speed sOffset="100" max="20"/>', side="right", sign="-")
+    text = re.sub("<type .*", "", LIMITS)
+    for name, sections, source in (("a", own, LimitSource.POSTED), ("b", own + rest, LimitSource.ASSUMED)):
+        (tmp_path / f"{name}.xodr").write_text(text.format("RHT", sections, ""), "utf-8")
+        road_network(tmp_path / f"{name}.xodr", tmp_path)
+        assert {each.limit_source for each in read_network(tmp_path / NET).edges.values()} == {source}
 
 
 NO_TRUCK = '<access sOffset="0" rule="deny"{}</access>'

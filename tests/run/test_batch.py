@@ -1,10 +1,11 @@
 """Evaluations on the small grid, with agents that die, hang and raise."""
 
+import errno
 import os
 import sys
 import time
 from collections import Counter
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from functools import partial
 
@@ -25,7 +26,7 @@ from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import opened, read_rows, read_trace, trace_file
 from automotive_cosim.run.trial_folder import pictures, read_steps, read_trial
-from automotive_cosim.run.worker import run_job, trials
+from automotive_cosim.run.worker import run_job, run_with, trials
 from automotive_cosim.tasks import CATALOGUE
 from tests.here import Here
 from tests.preloaded import ADDRESS
@@ -286,6 +287,18 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
         left.rmdir()
     (tmp_path / "e" / "traces").chmod(0o700)
     assert run_plan(plan("oracle"), tmp_path / "e").successes == 1
+
+
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EACCES])
+def test_a_disk_that_is_full_within_a_trial_is_no_error_of_that_trial(tmp_path, code):
+    @contextmanager
+    def agent():
+        raise OSError(code, os.strerror(code))
+        yield
+
+    job = plan("oracle").jobs()[0]
+    with pytest.raises(OSError, match="No space") if code == errno.ENOSPC else nullcontext():
+        assert run_with(agent(), job, tmp_path, Pictures.NONE, None).error_kind == "PermissionError"
 
 
 @pytest.mark.sumo

@@ -112,7 +112,7 @@ def driven(simulations: Simulations, tmp_path_factory: pytest.TempPathFactory) -
         plan = make_plan({"agents": ["alert-often", "asurada"], "drives": ["grid_june"], "seeds": [2],
                           "settings": {"minutes": 0.4, "cars": 3}})  # fmt: skip
         end = run_plan(plan, folder, executor=here)
-    assert (end.planned, end.done, end.errors) == (2, 2, 0)
+    assert (end.planned, end.done, end.errors) == (6, 6, 0)
     return folder
 
 
@@ -142,7 +142,7 @@ def test_rows_are_of_cars_and_a_lost_one_is_made_again(
     with closing(ForkServer()) as fork_server:
         plan = make_plan(json.loads((driven / "manifest.json").read_text())["plan"])
         end = run_plan(plan, folder, executor=Here(simulations, fork_server))
-    assert (end.ran, end.done) == (1, 2)
+    assert (end.ran, end.done) == (3, 6)
     before, now = (read_rows(each, DriveTrialRow) for each in (driven, folder))
     assert {name: steady(row) for name, row in before.items()} == {name: steady(row) for name, row in now.items()}
     assert lost["id"] in now

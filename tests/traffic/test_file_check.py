@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import gzip
 import re
 import shutil
@@ -478,3 +479,16 @@ def test_the_whole_corpus_at_once_writes_nothing(tmp_path: Path, monkeypatch: py
         assert traffic.state.vehicle_count > 2
         assert "(deleted)" in str(Path(f"/proc/{traffic.pid}/cwd").readlink())
     assert _listing(tmp_path) == before
+
+
+def test_a_disk_that_is_full_is_no_fault_of_the_file_that_is_copied(tmp_path, monkeypatch):
+    source = tmp_path / "a.rou.xml"
+    source.write_text(f"<routes>{ROUTE}</routes>", "utf-8")
+    (tmp_path / "copies").mkdir()
+
+    def lack_space(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("automotive_cosim.formats.writing.os.replace", lack_space)
+    with pytest.raises(OSError, match="No space left"):
+        copy_vetted(source, tmp_path / "copies", "a")

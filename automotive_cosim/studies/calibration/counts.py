@@ -34,6 +34,7 @@ from automotive_cosim.studies.calibration.sumo_counts import (
     LORRIES,
     MINUTES,
     Flows,
+    doubts_of,
     is_xml,
     read_dfrouter_counts,
     read_xml_counts,
@@ -89,6 +90,8 @@ class Counts:
     """Where the sites stand, as far as the files say."""
     about: str
     """A description of their source."""
+    doubts: tuple[str, ...] = ()
+    """In words, about their source."""
 
     @property
     def sites(self) -> tuple[str, ...]:
@@ -138,7 +141,8 @@ def read_counts(path: Path, zone: tzinfo, sites: Path | None = None) -> Counts:
             places |= _places(sites, sheet)
     if not any(any(each) for each in flows.values()):
         raise UserError(f"{path} has no count above zero; give counts of working detectors")
-    return Counts({key: median(each) for key, each in sorted(flows.items())}, places, about)
+    doubts = doubts_of(path) if is_xml(path) else ()
+    return Counts({key: median(each) for key, each in sorted(flows.items())}, places, about, doubts)
 
 
 def _sumo_counts(path: Path, sheet: Sheet | None, detectors: Path | None) -> Flows:

@@ -39,7 +39,7 @@ def map_sites(counts: Counts, network: Network, capacity: Capacity) -> Mapped:
     """Finds each site's edge, and checks the counts against the roads and each other."""
     edges: dict[str, str] = {}
     unmapped: dict[str, str] = {}
-    doubts: list[str] = []
+    doubts = [*counts.doubts]
     nearby = _Nearby(network)
     taken: dict[str, str] = {}
     for site in counts.sites:

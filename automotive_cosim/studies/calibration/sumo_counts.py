@@ -22,7 +22,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import opened
 from automotive_cosim.formats.xml import read_tree
 from automotive_cosim.studies.calibration.sheets import Sheet
@@ -32,6 +34,9 @@ DETECTOR, MINUTES, CARS, LORRIES = "Detector", "Time", "qPKW", "qLKW"
 
 PLACED = frozenset({"e1Detector", "inductionLoop", "detectorDefinition", "detector_definition"})
 """Elements with the ``id`` and the ``lane`` of a detector."""
+
+PASSED = {"entered": 1, "departed": 1, "left": -1, "arrived": -1, "vaporized": -1, "teleported": -1}
+"""Of an edge: who came, and who went."""
 
 HOUR_S = 3600
 DAY_H = 24
@@ -88,6 +93,28 @@ def read_xml_counts(path: Path, detectors: Path | None) -> Flows:
             " (<interval nVehContrib=…>); give one of these, or a table"
         )
     return _by_hour(found) if edges else _by_edge(_by_hour(found), _lanes(path, detectors))
+
+
+def doubts_of(path: Path) -> tuple[str, ...]:
+    """What is doubtful about a file of edge data that ``read_xml_counts`` has read: SUMO 1.28 with ``--mesosim``
+    counts a vehicle as entered twice where it arrives before the last stretch of its road (``arrivalPos``)."""
+    with opened(path) as file:
+        if b'<mesosim value="true"' not in file.read(bounds.CHUNK_BYTES):  # of SUMO's options, in a comment
+            return ()
+    more: defaultdict[str, float] = defaultdict(float)
+    ends: set[str] = set()
+    for element in _elements(path):
+        if element.tag == "edge" and "entered" in element.attrib:
+            site, of = element.get("id", ""), PASSED.keys() & element.attrib.keys()
+            more[site] += sum(PASSED[name] * _number(path, element, name) for name in of)
+            ends |= {site} if element.get("arrived", "0") != "0" else set()
+    if not (twice := sorted(site for site in ends if more[site] > 0)):
+        return ()
+    where = f"{counted(len(twice), 'edge')}, such as {twice[0]}"
+    return (
+        f"{path.name} is of --mesosim, which counts some arrivals (arrivalPos) as entered twice: on {where}, more "
+        "came than went; let SUMO write it without --mesosim",
+    )
 
 
 def read_dfrouter_counts(path: Path, sheet: Sheet, detectors: Path | None) -> Flows:

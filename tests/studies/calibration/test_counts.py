@@ -230,6 +230,16 @@ def test_edge_data_of_sumo_is_counts_per_hour_of_each_edge(tmp_path: Path, packe
     assert counts.places["north"] == SitePlace("north")
 
 
+@pytest.mark.parametrize("meso", [True, False])
+def test_arrivals_that_a_mesoscopic_simulation_counts_twice_are_doubtful(tmp_path: Path, meso: bool) -> None:
+    told = f'<!-- <mesosim value="{str(meso).lower()}"/> -->'
+    data = EDGE_DATA.replace("<interval", f"{told}<interval").replace('entered="880"', 'entered="880" left="900"')
+    assert not read_counts(_file(tmp_path, [data], "right.xml"), PARIS).doubts
+    twice = data.replace('left="900"', 'left="500" arrived="200"')
+    doubts = read_counts(_file(tmp_path, [twice], "twice.xml"), PARIS).doubts
+    assert [("on 1 edge, such as north, more" in each) for each in doubts] == [True] * meso
+
+
 def test_loops_are_added_up_over_the_lanes_of_an_edge_and_have_a_median_over_days(tmp_path: Path) -> None:
     counted, loops = _file(tmp_path, [LOOPED], "out.xml"), _file(tmp_path, [LOOPS], "loops.add.xml")
     counts = read_counts(counted, PARIS, loops)
