@@ -585,14 +585,14 @@ def _crossings(reading: NetworkReader) -> dict[str, dict[str, Crossing]]:
                         "build the network anew with netconvert"
                     )
             links.setdefault(here, {}).setdefault(there, []).append(link)
-    alike: dict[Crossing, Crossing] = {}
+    alike: dict[tuple[Any, ...], Crossing] = {}
     return {
-        here: {there: alike.setdefault(way := _through(between, reading), way) for there, between in ways.items()}
+        here: {there: _through(between, reading, alike) for there, between in ways.items()}
         for here, ways in links.items()
     }
 
 
-def _through(links: list[_Connection], reading: NetworkReader) -> Crossing:
+def _through(links: list[_Connection], reading: NetworkReader, alike: dict[tuple[Any, ...], Crossing]) -> Crossing:
     """The crossing of some connections between two edges; its way is that of the first."""
     link = links[0]
     length_m, speed_mps, via = 0.0, float("inf"), link.via
@@ -601,9 +601,12 @@ def _through(links: list[_Connection], reading: NetworkReader) -> Crossing:
         length_m += lane_m
         speed_mps = min(speed_mps, lane_mps)
         via = reading.onward.get(via)
-    lanes = frozenset((each.from_lane, each.to_lane) for each in links)
     has_signal = link.signal is not None and link.signal not in reading.for_trains
-    return Crossing(length_m, speed_mps, link.is_straight, has_signal, lanes)
+    lanes = tuple((each.from_lane, each.to_lane) for each in links)
+    found = length_m, speed_mps, link.is_straight, has_signal, lanes
+    if found not in alike:
+        alike[found] = Crossing(length_m, speed_mps, link.is_straight, has_signal, frozenset(lanes))
+    return alike[found]
 
 
 def _opposite(edges: Iterable[Edge]) -> dict[str, str]:
