@@ -14,7 +14,7 @@ from typing import Any
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import bounds
-from automotive_cosim.formats.xml import scan
+from automotive_cosim.formats.xml import Place, scan
 
 PARAMETER = re.compile(r"\$([A-Za-z_]\w*)")
 _OPERATORS: Mapping[type[ast.AST], Any] = {
@@ -187,10 +187,11 @@ def read_tree(path: Path, kept: frozenset[str] | None = None) -> XmlElement:
     Raises ScenarioError: it is missing or no XML."""
     open_elements: list[XmlElement] = []
     roots: list[XmlElement] = []
+    place = Place()
 
-    def start(tag: str, attributes: dict[str, str], line: int) -> None:
+    def start(tag: str, attributes: dict[str, str]) -> None:
         if kept is None or not open_elements or tag in kept:
-            made = XmlElement(tag, attributes, line, path)
+            made = XmlElement(tag, attributes, place.line, path)
             (open_elements[-1].parts if open_elements else roots).append(made)
             open_elements.append(made)
 
@@ -198,5 +199,5 @@ def read_tree(path: Path, kept: frozenset[str] | None = None) -> XmlElement:
         if kept is None or tag in kept:
             open_elements.pop()
 
-    scan(path, start, end, error=ScenarioError, most_elements=bounds.KEPT_ELEMENTS)
+    scan(path, start, end, place=place, error=ScenarioError, most_elements=bounds.KEPT_ELEMENTS)
     return roots[0]

@@ -27,16 +27,27 @@ ENCODINGS = SHARED_ENCODINGS | {"latin1", "latin-1", "iso-8859-15", "windows-125
 INVALID_TOKEN = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
 LATIN_1 = '<?xml version="1.0" encoding="iso-8859-1"?>'
 
-OnStart = Callable[[str, dict[str, str], int], None]
-"""Takes an element's name, its attributes and its line."""
+OnStart = Callable[[str, dict[str, str]], None]
+"""Takes an element's name and its attributes. The parser itself calls it: a city has a million elements."""
+
+
+class Place:
+    """Where in a file its reader is."""
+
+    parser: expat.XMLParserType
+
+    @property
+    def line(self) -> int:
+        return self.parser.CurrentLineNumber
 
 
 def scan(
     path: Path,
     start: OnStart,
     end: Callable[[str], None] | None = None,
-    text: Callable[[str, int], None] | None = None,
+    text: Callable[[str], None] | None = None,
     *,
+    place: Place | None = None,
     error: type[UserError],
     what: str = "XML",
     copy: Path | None = None,
@@ -48,7 +59,8 @@ def scan(
     Args:
         start: called at the start of each element.
         end: called with the name at the end of each.
-        text: called with each piece of text between them, and its line.
+        text: called with each piece of text between them.
+        place: is where it is, for whoever is called.
         what: what the file should be, for errors.
         copy: a file to write, with the very bytes that are read, unpacked.
         hashed: called with these bytes.
@@ -60,13 +72,8 @@ def scan(
     parser.buffer_text = True
     encoding = "utf-8"
     left = bounds.ELEMENTS if most_elements is None else most_elements
-
-    def begun(name: str, attributes: dict[str, str]) -> None:
-        nonlocal left
-        left -= 1
-        if left < 0:
-            raise error(f"{path} line {parser.CurrentLineNumber}: too many elements; give a part of it")
-        start(name, attributes, parser.CurrentLineNumber)
+    if place is not None:
+        place.parser = parser
 
     def declared(version: str, declaration: str | None, standalone: int) -> None:
         nonlocal encoding
@@ -79,12 +86,11 @@ def scan(
 
     parser.XmlDeclHandler = declared
     parser.StartDoctypeDeclHandler = document_type
-    parser.StartElementHandler = begun
+    parser.StartElementHandler = start
     if end is not None:
         parser.EndElementHandler = end
     if text is not None:
-        taken = text
-        parser.CharacterDataHandler = lambda piece: taken(piece, parser.CurrentLineNumber)
+        parser.CharacterDataHandler = text
     try:
         with ExitStack() as open_files:
             file = open_files.enter_context(opened(path))
@@ -96,6 +102,9 @@ def scan(
                     target.write(piece)
                 if hashed is not None:
                     hashed(piece)
+                left -= piece.count(b"<") - piece.count(b"</")
+                if left < 0:
+                    raise error(f"{path} line {parser.CurrentLineNumber}: too many elements; give a part of it")
                 parser.Parse(piece, False)
                 size += len(piece)
                 if size - parser.CurrentByteIndex > bounds.TAG_BYTES + bounds.CHUNK_BYTES:
@@ -130,16 +139,13 @@ def read_tree(path: Path, *, error: type[UserError]) -> ET.Element:
     """A file that is kept whole. Raises UserError: of that class, as ``scan``."""
     builder = ET.TreeBuilder()
 
-    def start(name: str, attributes: dict[str, str], line: int) -> None:
+    def start(name: str, attributes: dict[str, str]) -> None:
         builder.start(name, attributes)
 
     def end(name: str) -> None:
         builder.end(name)
 
-    def text(piece: str, line: int) -> None:
-        builder.data(piece)
-
-    scan(path, start, end, text, error=error, most_elements=bounds.KEPT_ELEMENTS)
+    scan(path, start, end, builder.data, error=error, most_elements=bounds.KEPT_ELEMENTS)
     return builder.close()
 
 
@@ -153,7 +159,7 @@ def read_root(path: Path, *, error: type[UserError]) -> ET.Element:
     Raises UserError: of that class, as ``scan``."""
     root = ET.Element("")
 
-    def start(name: str, attributes: dict[str, str], line: int) -> None:
+    def start(name: str, attributes: dict[str, str]) -> None:
         root.tag, root.attrib = name, attributes
         raise _FoundError
 

@@ -25,7 +25,7 @@ from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_utf8, open_file, opened
 from automotive_cosim.formats.limited import read_limited
 from automotive_cosim.formats.writing import drafted
-from automotive_cosim.formats.xml import scan
+from automotive_cosim.formats.xml import Place, scan
 from automotive_cosim.osm import land_cover
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.land_cover import MappedArea
@@ -415,9 +415,9 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
         the version of the format.
     """
     deleted: set[tuple[str, int]] = set()
-    version, within = "0.6", ""
+    version, within, place = "0.6", "", Place()
 
-    def start(name: str, attributes: dict[str, str], line: int) -> None:
+    def start(name: str, attributes: dict[str, str]) -> None:
         nonlocal version, within
         if name in ("tag", "nd"):  # most of the elements
             version = "" if name == "nd" and within == "relation" else version
@@ -437,14 +437,14 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
         for key, most in (("lat", 90), ("lon", 180)) if name == "node" else ():
             text = attributes.get(key, "0")
             if not POSITION.fullmatch(text) or abs(float(text)) > most:
-                raise UserError(f"{source} line {line}: {key} is {text[:40]!r}; it is from {-most} to {most}")
+                raise UserError(f"{source} line {place.line}: {key} is {text[:40]!r}; it is from {-most} to {most}")
         if attributes.get("action") == "delete" or attributes.get("visible") == "false":
             number = attributes.get("id", "")
             if _ID.fullmatch(number):
                 deleted.add((name, int(number)))
 
     try:
-        scan(source, start, error=_UnreadableError)
+        scan(source, start, place=place, error=_UnreadableError)
     except _UnreadableError as error:
         if isinstance(error.__cause__, OSError):
             raise UserError(f"{source} is truncated or damaged ({error.__cause__})") from error

@@ -20,7 +20,7 @@ from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_d
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.words import shown
-from automotive_cosim.formats.xml import scan
+from automotive_cosim.formats.xml import Place, scan
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.mirror import mirrored
 from automotive_cosim.traffic.network import Network, Shape, open_to, quantity, read_network
@@ -136,10 +136,10 @@ def read_ground(
     """
     found: list[GroundArea] = []
     reference = None if roads.projection is None else GeoReference(roads)
-    files = list(configuration.files.get("additional-files", ()))
+    files, place = list(configuration.files.get("additional-files", ())), Place()
     for file in files:  # which grows
 
-        def start(element: str, attributes: dict[str, str], line: int, file: Path = file) -> None:
+        def start(element: str, attributes: dict[str, str], file: Path = file) -> None:
             also(element, attributes)
             if element == "include" and (included := file.parent / attributes.get("href", "")) not in files:
                 files.append(included)
@@ -149,12 +149,12 @@ def read_ground(
                 area = _area(attributes, reference)
             except ValueError as error:
                 raise ScenarioError(
-                    f"{file} line {line}: polygon {shown(attributes.get('id'))}: {error}"
+                    f"{file} line {place.line}: polygon {shown(attributes.get('id'))}: {error}"
                 ) from error
             if area is not None:
                 found.append(area)
 
-        scan(file, start, error=ScenarioError, what="a SUMO file")
+        scan(file, start, place=place, error=ScenarioError, what="a SUMO file")
     return in_drawing_order(_largest(found))
 
 

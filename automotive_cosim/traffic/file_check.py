@@ -22,7 +22,7 @@ from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_file, opened
 from automotive_cosim.formats.writing import drafted
-from automotive_cosim.formats.xml import SHARED_ENCODINGS, scan
+from automotive_cosim.formats.xml import SHARED_ENCODINGS, Place, scan
 from automotive_cosim.traffic.georeference import in_full
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vocabulary import ELEMENTS, INPUTS, OUTPUTS, WRITING_LIGHT, parameter
@@ -52,6 +52,12 @@ FREE = "metadata"
 
 NAMING = TRAVELLERS.union(INPUTS, OUTPUTS, ("ride", "transport", "stop"))
 """Elements of which an attribute may have to change."""
+
+PLAIN = frozenset(ELEMENTS) - NAMING - {"param", "location", FREE}
+"""Elements that stay as they are but for a picture."""
+
+NO_DEPTH = 2**31
+"""Deeper than any element."""
 
 
 class ElementHandler(Protocol):
@@ -172,7 +178,14 @@ def _scanned(
 ) -> str:
     """Checks a file; returns its encoding."""
     return scan(
-        reader.path, reader.start, reader.ended.append, error=ScenarioError, what=what, copy=copy, hashed=hashed
+        reader.path,
+        reader.start,
+        reader.ended.append,
+        place=reader.place,
+        error=ScenarioError,
+        what=what,
+        copy=copy,
+        hashed=hashed,
     )
 
 
@@ -200,34 +213,45 @@ class _Reader:
     """How deep the element stands that includes this file, and 1 more."""
     ended: list[str] = field(default_factory=list)
     """Names of the elements that have ended: to have them listed takes none of a million calls of Python's."""
-    free: int = 2**31
-    """How deep the element stands within which anything may be; impossibly deep outside of one."""
+    free: int = NO_DEPTH
+    """How deep the element stands within which anything may be."""
+    place: Place = field(default_factory=Place)
 
-    def start(self, name: str, attributes: dict[str, str], line: int) -> None:
+    @property
+    def where(self) -> str:
+        """The element that is read, for errors."""
+        return f"{self.path} line {self.place.line}"
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
         """Takes the start of an element."""
         depth = self.count - len(self.ended)
         if self.also is not None:
             self.also.start(name, attributes, self.above + depth)
+        if name not in PLAIN or self.free < NO_DEPTH or PICTURE in attributes:
+            self._take(name, attributes, depth)
+        self.count += 1
+
+    def _take(self, name: str, attributes: dict[str, str], depth: int) -> None:
+        """Takes one that may be none of SUMO's, or may have to change."""
         if depth <= self.free:
-            self.free = depth if name == FREE else 2**31
+            self.free = depth if name == FREE else NO_DEPTH
         if name not in ELEMENTS and 0 < depth <= self.free:
             unknown = UnknownNameError("element of SUMO", name[:80], ELEMENTS, "docs/reference/scenarios.md")
-            raise ScenarioError(f"{self.path} line {line}: {unknown}")
+            raise ScenarioError(f"{self.where}: {unknown}")
         if name == "param":
-            self._take_parameter(attributes, line)
+            self._take_parameter(attributes)
         elif name == "location":
             new = attributes | {"projParameter": in_full(attributes)}
             if new != attributes:
                 self.changed[self.count] = new
         elif name in NAMING or PICTURE in attributes:
             new = dict(attributes)
-            self._take_files(name, new, line)
-            self._rename(name, new, line)
+            self._take_files(name, new)
+            self._rename(name, new)
             if new != attributes:
                 self.changed[self.count] = new
-        self.count += 1
 
-    def _take_parameter(self, attributes: dict[str, str], line: int) -> None:
+    def _take_parameter(self, attributes: dict[str, str]) -> None:
         key = attributes.get("key", "")
         if key == WRITING_LIGHT:  # of a traffic light, in whatever element of it this stands
             self.changed[self.count] = attributes | {"value": NOWHERE}
@@ -235,18 +259,16 @@ class _Reader:
         try:
             taken = parameter(key)
         except KeyError:
-            raise ScenarioError(
-                f"{self.path} line {line}: no device here has a parameter {key[:80]!r}; remove it"
-            ) from None
+            raise ScenarioError(f"{self.where}: no device here has a parameter {key[:80]!r}; remove it") from None
         if not taken:
             self.changed[self.count] = None
 
-    def _take_files(self, element: str, attributes: dict[str, str], line: int) -> None:
+    def _take_files(self, element: str, attributes: dict[str, str]) -> None:
         attributes.pop(PICTURE, None)
         if attributes.get(OUTPUTS.get(element, "")):
             attributes[OUTPUTS[element]] = NOWHERE
         if read := attributes.get(INPUTS.get(element, "")):
-            attributes[INPUTS[element]] = self._taken_file(element, read, f"{self.path} line {line}")
+            attributes[INPUTS[element]] = self._taken_file(element, read, self.where)
 
     def _taken_file(self, element: str, read: str, where: str) -> str:
         """Checks a file that an element names, and copies it; returns the copy's name."""
@@ -266,11 +288,11 @@ class _Reader:
                 shutil.copyfileobj(given, copy)
         return name
 
-    def _rename(self, element: str, attributes: dict[str, str], line: int) -> None:
+    def _rename(self, element: str, attributes: dict[str, str]) -> None:
         """Keeps the name of the cockpit's car free."""
         if element in TRAVELLERS and NOT_IN_IDS.search(attributes.get("id", "")):
             raise ScenarioError(
-                f"{self.path} line {line}: SUMO takes no {element} with the id {attributes['id'][:80]!r}; rename "
+                f"{self.where}: SUMO takes no {element} with the id {attributes['id'][:80]!r}; rename "
                 "it, without spaces and | \\ ; , '"
             )
         if element in VEHICLES and attributes.get("id") == EGO:
@@ -291,7 +313,7 @@ class _Writer:
     left_out: int = 0
     """Depth within an element that is left out."""
 
-    def start(self, name: str, attributes: dict[str, str], line: int) -> None:
+    def start(self, name: str, attributes: dict[str, str]) -> None:
         """Writes the start of an element."""
         new = self.changed.get(self.count, attributes)
         self.count += 1
@@ -306,7 +328,7 @@ class _Writer:
         else:
             self.file.write(f"</{name}>")
 
-    def text(self, piece: str, line: int) -> None:
+    def text(self, piece: str) -> None:
         """Writes the text between elements."""
         if not self.left_out:
             self.file.write(escape(piece))

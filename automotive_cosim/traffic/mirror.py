@@ -54,7 +54,7 @@ def write_mirrored(net: Path, target: Path, image: RoadNetwork) -> None:
     with drafted(target) as written:
         file = getwriter("utf-8")(written)
 
-        def start(name: str, attributes: dict[str, str], line: int) -> None:
+        def start(name: str, attributes: dict[str, str]) -> None:
             changed = {key: _changed(name, key, value, sum_m) for key, value in attributes.items()}
             if name == "net":
                 changed["lefthand"] = lefthand

@@ -30,14 +30,15 @@ from __future__ import annotations
 import itertools
 import math
 import pickle
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from functools import lru_cache
 from pathlib import Path
 from sys import intern
-from typing import TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, Road, RoadNetwork
-from automotive_cosim.contracts.roads import by_values
+from automotive_cosim.contracts.roads import Columns, in_columns, of_columns
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.xml import read_root, scan, without_collection
 from automotive_cosim.traffic import georeference
@@ -69,6 +70,9 @@ EDGE_DEPTH, LANE_DEPTH = 1, 2
 
 SIGNED = "signed"
 """What a lane's attributes have here of a limit of its own."""
+
+NO_LANES: frozenset[str] = frozenset()
+"""One object for all edges."""
 
 Shape = tuple[tuple[float, float], ...]
 Attributes: TypeAlias = dict[str, str]
@@ -106,8 +110,6 @@ def quantity(text: str, least: float = -LARGEST) -> float:
 class Edge:
     """One edge open to cars."""
 
-    __reduce__ = by_values
-
     edge_id: str
     from_node: str
     to_node: str
@@ -136,9 +138,9 @@ class Edge:
     school_zone: bool = False
     timed_limits: tuple[TimedLimit, ...] = ()
     """Limits that are posted for certain hours."""
-    signed_lanes: frozenset[str] = frozenset()
+    signed_lanes: frozenset[str] = NO_LANES
     """Lanes with a limit of their own on a sign."""
-    variable_lanes: frozenset[str] = frozenset()
+    variable_lanes: frozenset[str] = NO_LANES
     """Lanes over which a variable sign shows something now."""
     timed_limit: TimedLimit | None = None
     """The one of them that is in force; ``limit_mps`` is the present limit."""
@@ -164,17 +166,41 @@ class Edge:
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """The connection through a junction from one edge to the next."""
-
-    __reduce__ = by_values
+    """The connection through a junction from one edge to the next. A city has few that differ, and many alike are
+    one object."""
 
     length_m: float
     speed_mps: float
     """Speed of its slowest lane."""
     is_straight: bool = True
     has_signal: bool = False
-    lanes: frozenset[tuple[str, str]] = frozenset()
-    """The lanes that it leads from and to, for cars."""
+    lanes: frozenset[tuple[int, int]] = frozenset()
+    """The lanes that it leads from and to, for cars, by their numbers."""
+
+    def between(self, here: str, there: str) -> list[tuple[str, str]]:
+        """The lanes of two edges that it leads from and to."""
+        return [(f"{here}_{from_lane}", f"{there}_{to_lane}") for from_lane, to_lane in self.lanes]
+
+
+Crossings: TypeAlias = Mapping[str, Mapping[str, Crossing]]
+"""From edge, to edge."""
+
+
+@dataclass(frozen=True, slots=True)
+class JunctionLengths(Mapping[tuple[str, str], float]):
+    """The length of the way through the junction between two edges, read from the crossings."""
+
+    crossings: Crossings
+
+    def __getitem__(self, pair: tuple[str, str]) -> float:
+        here, there = pair
+        return self.crossings[here][there].length_m
+
+    def __iter__(self) -> Iterator[tuple[str, str]]:
+        return ((here, there) for here, ways in self.crossings.items() for there in ways)
+
+    def __len__(self) -> int:
+        return sum(map(len, self.crossings.values()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,8 +209,7 @@ class Network:
 
     edges: dict[str, Edge]
     """The edges; a limit changed by time or an incident replaces its edge."""
-    crossings: Mapping[str, Mapping[str, Crossing]]
-    """From edge, to edge."""
+    crossings: Crossings
     opposite: Mapping[str, str]
     """The opposite edge between the same junctions, if there is one."""
     map: RoadNetwork
@@ -196,6 +221,10 @@ class Network:
     """Edges that a rerouter of the scenario closes to cars at any time."""
     closed_free_s: Mapping[str, float] = field(default_factory=dict)
     """The time of each edge without a lane for cars, as of a way for buses, at its limit."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        _, *values = (getattr(self, each.name) for each in fields(self))
+        return _unpacked, (in_columns(Edge, self.edges.values()), *values)
 
     @property
     def free_s(self) -> dict[str, float]:
@@ -246,12 +275,15 @@ class Network:
         return replace(self, edges=edges, map=replace(self.map, roads=roads))
 
 
-@dataclass(slots=True)
-class _Connection:
+def _unpacked(edges: Columns[Edge], *values: Any) -> Network:
+    return Network({edge.edge_id: edge for edge in of_columns(edges)}, *values)
+
+
+class _Connection(NamedTuple):
     from_edge: str
-    from_lane: str
+    from_lane: int
     to_edge: str
-    to_lane: str
+    to_lane: int
     via: str | None
     is_straight: bool
     signal: str | None
@@ -266,19 +298,20 @@ class KnownNetwork:
     pickled: bytes
 
 
-_KNOWN: dict[Path, KnownNetwork] = {}
-"""The last one, by the file that runs it."""
+_KNOWN: dict[Path, tuple[KnownNetwork, RoadNetwork]] = {}
+"""The last one, by the file that runs it, with its map as this process has it."""
 
 
 def make_known(config: Path, digest: bytes, network: Network) -> None:
     """Keeps what has been read for the simulation's process, which is to read it a second time otherwise."""
     _KNOWN.clear()
-    _KNOWN[config.absolute()] = KnownNetwork(digest, pickle.dumps(network, pickle.HIGHEST_PROTOCOL))
+    known = KnownNetwork(digest, pickle.dumps(network, pickle.HIGHEST_PROTOCOL))
+    _KNOWN[config.absolute()] = known, network.map
 
 
-def known_network(config: Path) -> KnownNetwork | None:
-    """What is known of the network that a file runs."""
-    return _KNOWN.get(config.absolute())
+def known_network(config: Path) -> tuple[KnownNetwork, RoadNetwork] | tuple[None, None]:
+    """What is known of the network that a file runs, and its map."""
+    return _KNOWN.get(config.absolute(), (None, None))
 
 
 class NetworkReader:
@@ -376,8 +409,7 @@ class NetworkReader:
         if doubt:
             roads = replace(roads, projection=None)
         crossings = _crossings(self)
-        lengths_m = {(here, there): way.length_m for here, ways in crossings.items() for there, way in ways.items()}
-        roads = replace(roads, junctions_m=lengths_m)
+        roads = replace(roads, junctions_m=JunctionLengths(crossings))
         opposite = _opposite(self.edges.values())
         return Network(self.edges, crossings, opposite, roads, doubt, closed_free_s=self.closed_free_s)
 
@@ -390,15 +422,15 @@ class NetworkReader:
     def _take_edge(self) -> None:
         """Takes the edge that has been read."""
         edge, self._edge = self._edge, {}
-        lanes = [lane for lane in self._lanes if open_to(lane)]
-        if edge.get("function") == "internal":
-            for lane in lanes:
-                speed_mps = quantity(lane["speed"], SLOWEST_MPS)
-                self.inner_lanes[lane["id"]] = quantity(lane["length"], 0.0), speed_mps
-        elif lanes and "function" not in edge:
+        if function := edge.get("function"):
+            for lane in self._lanes if function == "internal" else ():
+                if open_to(lane):
+                    speed_mps = quantity(lane["speed"], SLOWEST_MPS)
+                    self.inner_lanes[lane["id"]] = quantity(lane["length"], 0.0), speed_mps
+        elif lanes := [lane for lane in self._lanes if open_to(lane)]:
             cars_mps = self.cars_mps.get(edge.get("type", ""))
             self.edges[intern(edge["id"])] = _edge(edge, lanes, self._lanes, self._params, cars_mps)
-        elif self._lanes and "function" not in edge:
+        elif self._lanes:
             self.closed_free_s[edge["id"]] = min(
                 quantity(lane["length"], 0.0) / max(SLOWEST_MPS, quantity(lane["speed"], 0.0))
                 for lane in self._lanes
@@ -414,7 +446,7 @@ def read_network(path: Path) -> Network:
     reader, ended = NetworkReader(path), list[str]()
     count = itertools.count()
 
-    def start(name: str, attributes: Attributes, line: int) -> None:
+    def start(name: str, attributes: Attributes) -> None:
         reader.start(name, attributes, next(count) - len(ended))
 
     scan(path, start, ended.append, error=ScenarioError, what=FORM)
@@ -456,29 +488,39 @@ def _edge(
         limit_mps=None if unlimited else speed_mps,
         limit_source=LimitSource.POSTED if is_posted else LimitSource.ASSUMED,
         cars_mps=cars_mps,
-        in_tunnel=params.get("tunnel", "no") != "no",
-        lit={"yes": True, "no": False}.get(params.get("lit", "")),
-        built_up=_built_up(params.get("zone:traffic", "")),
-        built_up_assumed=_built_up(params.get("zone:traffic:assumed", "")),
-        centre_line={"yes": True, "no": False}.get(params.get("lane_markings", "")),
         shape_m=_shape(edge.get("shape") or middle["shape"]),
         bus_lane=any(map(_for_buses, all_lanes)),
-        cameras_m=tuple(quantity(place_m) for place_m in params.get("speed_camera", "").split()),
-        sign=intern(params.get(SIGN, "")),
-        school_zone=params.get("hazard") == "school_zone",
-        timed_limits=timed_limits(params.get("maxspeed:conditional", ""))[0],
-        signed_lanes=frozenset(intern(lane["id"]) for lane in lanes if SIGNED in lane),
-        timed_access=timed_access(params.get(TIMED_ACCESS, "")),
-        timed_turns=tuple(
+        signed_lanes=frozenset(intern(lane["id"]) for lane in lanes if SIGNED in lane) or NO_LANES,
+        **(_told(params) if params else _NOTHING_TOLD),
+    )
+
+
+def _told(params: Attributes) -> dict[str, Any]:
+    """What an edge's parameters alone say."""
+    return {
+        "in_tunnel": params.get("tunnel", "no") != "no",
+        "lit": {"yes": True, "no": False}.get(params.get("lit", "")),
+        "built_up": _built_up(params.get("zone:traffic", "")),
+        "built_up_assumed": _built_up(params.get("zone:traffic:assumed", "")),
+        "centre_line": {"yes": True, "no": False}.get(params.get("lane_markings", "")),
+        "cameras_m": tuple(quantity(place_m) for place_m in params.get("speed_camera", "").split()),
+        "sign": intern(params.get(SIGN, "")),
+        "school_zone": params.get("hazard") == "school_zone",
+        "timed_limits": timed_limits(params.get("maxspeed:conditional", ""))[0],
+        "timed_access": timed_access(params.get(TIMED_ACCESS, "")),
+        "timed_turns": tuple(
             (intern(key.removeprefix(TIMED_TURN)), timed_access(value))
             for key, value in params.items()
             if key.startswith(TIMED_TURN)
         ),
-    )
+    }
 
 
 def _built_up(zone: str) -> bool | None:
     return BUILT_UP.get(zone.rpartition(":")[2])
+
+
+_NOTHING_TOLD = _told({})
 
 
 def open_to(lane: Attributes, vehicle_class: str = CARS) -> bool:
@@ -486,8 +528,8 @@ def open_to(lane: Attributes, vehicle_class: str = CARS) -> bool:
     allowed = lane.get("allow")
     if allowed is not None:
         return allowed == "all" or vehicle_class in allowed.split()
-    forbidden = lane.get("disallow", "").split()
-    return vehicle_class not in forbidden and "all" not in forbidden
+    forbidden = lane.get("disallow")
+    return not forbidden or frozenset(forbidden.split()).isdisjoint((vehicle_class, "all"))
 
 
 def _for_buses(lane: Attributes) -> bool:
@@ -500,6 +542,7 @@ def class_of(highway: str, tags: Mapping[str, str]) -> str:
     return "cycle_street" if any(tags.get(key) == "yes" for key in CYCLE_STREET_KEYS) else highway
 
 
+@lru_cache(maxsize=1024)
 def _highway(edge_type: str) -> str:
     kinds = (kind.partition(".") for kind in edge_type.split("|"))
     return next((value for key, _, value in kinds if key == "highway"), "")
@@ -511,15 +554,14 @@ def _shape(text: str) -> Shape:
 
 
 def _connection(link: Attributes) -> _Connection:
-    origin, goal = intern(link["from"]), intern(link["to"])
     return _Connection(
-        from_edge=origin,
-        from_lane=intern(f"{origin}_{link['fromLane']}"),
-        to_edge=goal,
-        to_lane=intern(f"{goal}_{link['toLane']}"),
-        via=link.get("via"),
-        is_straight=link.get("dir", "s") == "s",
-        signal=link.get("tl"),
+        intern(link["from"]),
+        int(link["fromLane"]),
+        intern(link["to"]),
+        int(link["toLane"]),
+        link.get("via"),
+        link.get("dir", "s") == "s",
+        link.get("tl"),
     )
 
 
@@ -534,20 +576,23 @@ def _crossings(reading: NetworkReader) -> dict[str, dict[str, Crossing]]:
     lanes = {lane for edge in reading.edges.values() for lane in edge.lane_ids}
     links: dict[str, dict[str, list[_Connection]]] = {}
     for link in reading.connections:
-        if link.from_lane in lanes and link.to_lane in lanes:
-            for edge_id in (link.from_edge, link.to_edge):
+        here, from_lane, there, to_lane, *_ = link
+        if f"{here}_{from_lane}" in lanes and f"{there}_{to_lane}" in lanes:
+            for edge_id in (here, there):
                 if edge_id not in reading.edges:
                     raise ScenarioError(
                         f"{reading.path} has a connection of the edge {edge_id!r}, which is not in it; "
                         "build the network anew with netconvert"
                     )
-            links.setdefault(link.from_edge, {}).setdefault(link.to_edge, []).append(link)
+            links.setdefault(here, {}).setdefault(there, []).append(link)
+    alike: dict[tuple[Any, ...], Crossing] = {}
     return {
-        here: {there: _through(between, reading) for there, between in ways.items()} for here, ways in links.items()
+        here: {there: _through(between, reading, alike) for there, between in ways.items()}
+        for here, ways in links.items()
     }
 
 
-def _through(links: Sequence[_Connection], reading: NetworkReader) -> Crossing:
+def _through(links: list[_Connection], reading: NetworkReader, alike: dict[tuple[Any, ...], Crossing]) -> Crossing:
     """The crossing of some connections between two edges; its way is that of the first."""
     link = links[0]
     length_m, speed_mps, via = 0.0, float("inf"), link.via
@@ -556,9 +601,12 @@ def _through(links: Sequence[_Connection], reading: NetworkReader) -> Crossing:
         length_m += lane_m
         speed_mps = min(speed_mps, lane_mps)
         via = reading.onward.get(via)
-    lanes = frozenset((each.from_lane, each.to_lane) for each in links)
     has_signal = link.signal is not None and link.signal not in reading.for_trains
-    return Crossing(length_m, speed_mps, link.is_straight, has_signal, lanes)
+    lanes = tuple((each.from_lane, each.to_lane) for each in links)
+    found = length_m, speed_mps, link.is_straight, has_signal, lanes
+    if found not in alike:
+        alike[found] = Crossing(length_m, speed_mps, link.is_straight, has_signal, frozenset(lanes))
+    return alike[found]
 
 
 def _opposite(edges: Iterable[Edge]) -> dict[str, str]:

@@ -20,7 +20,7 @@ from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, Trip
 from automotive_cosim.formats.writing import write_whole
-from automotive_cosim.formats.xml import read_root, scan
+from automotive_cosim.formats.xml import Place, read_root, scan
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.file_check import OTHER_EGO, copy_vetted, refuse_variables
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
@@ -46,6 +46,10 @@ DEFAULTS = {
 }
 """Options that keep traffic from locking up; a configuration may override them. SUMO's own experiments
 (``Scenario.as_stated``) do without."""
+
+COARSE = {"device.rerouting.adaptation-interval": "10", "device.rerouting.adaptation-steps": "18"}
+"""Of traffic that is drawn, in which no vehicle has a rerouting device: then only who goes round something closed
+reads what SUMO averages, and a value a second for every edge would be a sixth of a city's memory."""
 
 AGAIN = ("device.rerouting.period", "device.rerouting.adaptation-steps")
 """Those of them that let rerouting devices choose again and again; also set where a run is asked for devices."""
@@ -205,7 +209,7 @@ def read_configuration(path: Path) -> Configuration:
     if read_root(path, error=ScenarioError).tag == "net":
         return Configuration(path, path.absolute(), files={"net-file": (path.absolute(),)})
     reader = _Reader(path)
-    scan(path, reader.start, text=reader.text, error=ScenarioError, what="a SUMO configuration")
+    scan(path, reader.start, text=reader.text, place=reader.place, error=ScenarioError, what="a SUMO configuration")
     if "net-file" not in reader.files:
         raise ScenarioError(f"{path} names no net-file")
     return Configuration(
@@ -230,18 +234,19 @@ class _Reader:
     """Takes the options of a configuration."""
 
     path: Path
+    place: Place = field(default_factory=Place)
     options: dict[str, str] = field(default_factory=dict)
     files: dict[str, tuple[Path, ...]] = field(default_factory=dict)
     ignored: dict[str, None] = field(default_factory=dict)
     """Names, in their order."""
     parallel: dict[str, None] = field(default_factory=dict)
 
-    def start(self, element: str, attributes: dict[str, str], line: int) -> None:
+    def start(self, element: str, attributes: dict[str, str]) -> None:
         """Takes an option, or passes a section."""
         value = attributes.get("value", attributes.get("v"))
         if value is None:
             return
-        where = f"{self.path} line {line}"
+        where = f"{self.path} line {self.place.line}"
         if element in TAKEN:
             self._take(TAKEN[element], value, where)
         elif element in IGNORED or element in WINDOW:
@@ -262,10 +267,11 @@ class _Reader:
                 f"{where}: {UnknownNameError('option of SUMO', element[:80], TAKEN, 'sumo --help')}"
             )
 
-    def text(self, piece: str, line: int) -> None:
+    def text(self, piece: str) -> None:
         """Refuses the old form, which SUMO still reads."""
         if piece.strip():
-            raise ScenarioError(f'{self.path} line {line}: {piece.strip()[:80]!r}; write <option value="..."/>')
+            where = f"{self.path} line {self.place.line}"
+            raise ScenarioError(f'{where}: {piece.strip()[:80]!r}; write <option value="..."/>')
 
     def _take(self, name: str, value: str, where: str) -> None:
         if not value:
@@ -367,7 +373,9 @@ def _given(configuration: Configuration, scenario: Scenario) -> dict[str, str]:
     options = dict(configuration.options)
     if not scenario.as_stated:
         options.pop("end", None)
-        return DEFAULTS | options | FIXED
+        sumo = scenario.sumo
+        is_coarse = sumo.random_traffic_per_km_h > 0 and not sumo.background_rerouting
+        return DEFAULTS | (COARSE if is_coarse else {}) | options | FIXED
     return options | (NOTICED if options.get(COLLISIONS) == "none" else {})
 
 

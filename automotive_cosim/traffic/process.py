@@ -104,8 +104,9 @@ class Server:
 
     # --- the calls ----------------------------------------------------------------------------------------
 
-    def do_load(self, setup: Setup, scratch: Path, known: KnownNetwork | None) -> RoadNetwork:
-        """Loads and warms up; returns the network, which is not read once more if it is known.
+    def do_load(self, setup: Setup, scratch: Path, known: KnownNetwork | None) -> RoadNetwork | None:
+        """Loads and warms up; returns the network, which is not read once more if it is known, unless it is the
+        known one.
 
         From here on this process and its copies can write only to the scratch folder, which the other side removes
         when this is done, and beside SUMO's outputs, if the kernel can see to that.
@@ -122,7 +123,7 @@ class Server:
         world.prepare_copies()
         gc.collect()
         gc.freeze()  # collecting garbage would copy every page that the children share
-        return world.network.map
+        return None if world.is_known else world.network.map
 
     def do_move(self, scenario: Scenario) -> RoadNetwork:
         """Moves the warm traffic to where that scenario has it; returns the network there."""

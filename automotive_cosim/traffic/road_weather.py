@@ -197,8 +197,7 @@ class Surface:
         self._left_out = left_out
         self._drawn = drawn
         self.condition = DRY
-        tunnels = {lane for edge in network.edges.values() if edge.in_tunnel for lane in edge.lane_ids}
-        self._lanes = tuple(lane for lane in sumo.lane.getIDList() if lane not in tunnels)
+        self._tunnels = {lane for edge in network.edges.values() if edge.in_tunnel for lane in edge.lane_ids}
         self._types: dict[str, _Type] = {}
         self._factors: dict[str, float] = {}
         """Speed factor of each vehicle on a dry road, stored while the road is not dry."""
@@ -211,7 +210,7 @@ class Surface:
             self.condition = condition
             return
         if condition.friction != self.condition.friction:
-            for lane in self._lanes:
+            for lane in (each for each in self._sumo.lane.getIDList() if each not in self._tunnels):
                 self._sumo.lane.setFriction(lane, condition.friction)
         self.condition = condition
         for type_id in self._sumo.type.getIDList():

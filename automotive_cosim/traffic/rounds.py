@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Trip
-from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.network import JunctionLengths, Network
 from automotive_cosim.traffic.ways import way_through
+
+_Graph: TypeAlias = tuple[Mapping[str, Sequence[str]], Mapping[str, Sequence[str]]]
+"""The edges after each edge, and those before it."""
 
 ONWARD_M = 300.0
 """Distance to the destination at which the driver enters the next one: some twenty seconds in a town, so that there
@@ -39,7 +43,7 @@ def planned(network: Network, first: Trip, onward: Sequence[Trip]) -> Round:
         ScenarioError: one of them has no route, or no route leads from it to the others.
     """
     ways = [_way(network, trip) for trip in (first, *onward)]
-    core = _core(network, ways[0])
+    core = _core(_graph(JunctionLengths(network.crossings)), ways[0], [])
     parts = [_within(way, core) for way in ways]
     for trip, part in zip((first, *onward), parts, strict=True):
         if not part:
@@ -55,8 +59,9 @@ def in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:
     empty if none leads back to its start."""
     ways = {trip: way_through(network, (trip.from_edge, *trip.via, trip.to_edge)) for trip in trips}
     best: tuple[Trip, ...] = ()
+    graph, parts = _graph(JunctionLengths(network.crossings)), list[frozenset[str]]()
     for first, way in ways.items():
-        core = _core(network, way)
+        core = _core(graph, way, parts)
         if _within(way, core):
             others = (trip for trip in trips if trip is not first and _within(ways[trip], core))
             best = max(best, (first, *others), key=len)
@@ -69,12 +74,17 @@ def loop_with(junctions: Iterable[tuple[str, str]], edge: str) -> frozenset[str]
     Args:
         junctions: the edges before and after each way through a junction.
     """
+    ahead, back = _graph(junctions)
+    return frozenset(_reached(ahead, edge) & _reached(back, edge))
+
+
+def _graph(junctions: Iterable[tuple[str, str]]) -> _Graph:
     ahead: dict[str, list[str]] = {}
     back: dict[str, list[str]] = {}
     for here, there in junctions:
         ahead.setdefault(here, []).append(there)
         back.setdefault(there, []).append(here)
-    return frozenset(_reached(ahead, edge) & _reached(back, edge))
+    return ahead, back
 
 
 def _way(network: Network, trip: Trip) -> tuple[str, ...]:
@@ -90,32 +100,25 @@ def _within(way: Sequence[str], core: frozenset[str]) -> tuple[str, ...]:
     return tuple(way[places[0] : places[-1] + 1]) if places else ()
 
 
-def _core(network: Network, way: Iterable[str]) -> frozenset[str]:
-    """The largest set of edges that can all be reached from one another and has part in a way."""
-    back = _reversed(network)
+def _core(graph: _Graph, way: Iterable[str], parts: list[frozenset[str]]) -> frozenset[str]:
+    """The largest set of edges that can all be reached from one another and has part in a way.
+
+    Args:
+        parts: such sets that have been found, and are not searched again.
+    """
     best: frozenset[str] = frozenset()
-    seen: set[str] = set()
     for edge in way:
-        if edge not in seen:
-            part = frozenset(_reached(network.crossings, edge) & _reached(back, edge))
-            seen |= part
-            best = max(best, part, key=len)
+        part = next((part for part in parts if edge in part), None)
+        if part is None:
+            ahead, back = graph
+            parts.append(part := frozenset(_reached(ahead, edge) & _reached(back, edge)))
+        best = max(best, part, key=len)
     return best if len(best) > 1 else frozenset()
 
 
-def _reversed(network: Network) -> Mapping[str, Sequence[str]]:
-    back: dict[str, list[str]] = {}
-    for here, ways in network.crossings.items():
-        for there in ways:
-            back.setdefault(there, []).append(here)
-    return back
-
-
 def _reached(ways: Mapping[str, Iterable[str]], start: str) -> set[str]:
-    reached, left = {start}, [start]
-    while left:
-        for following in ways.get(left.pop(), ()):
-            if following not in reached:
-                reached.add(following)
-                left.append(following)
+    reached, new = {start}, {start}
+    while new:
+        new = set[str]().union(*(ways.get(edge, ()) for edge in new)) - reached
+        reached |= new
     return reached

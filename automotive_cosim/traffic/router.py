@@ -170,7 +170,7 @@ class Router:
         found: list[Collection[str]] = [self._network.edges[edges[-1]].lane_ids]
         for here, there in reversed(tuple(pairwise(edges))):
             way = self._network.crossings.get(here, {}).get(there)
-            links = way.lanes if way else ()
+            links = way.between(here, there) if way else []
             onward = {lane_id for lane_id, to_lane_id in links if to_lane_id in found[-1]}
             found.append(onward or {lane_id for lane_id, _ in links} or self._network.edges[here].lane_ids)
         return found[::-1]

@@ -100,8 +100,11 @@ class World:
         """Whether SUMO writes outputs, which are completed on closing."""
         self._sumo = load_library()
         with self._configuration.named_as_given():
-            self._roads = read_mapped(self._configuration, reader.network())
+            read = reader.network()
+            self._roads = read_mapped(self._configuration, read)
             self.network = self._placed(setup)
+            self.is_known = reader.known is not None and self.network is read
+            """Whether the other process has the same network."""
             self.always_open = self.network.open_at_all_hours()
             """The network with the ways only that are open at any hour."""
             options = run_options(self._configuration, setup, self.network)

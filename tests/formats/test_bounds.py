@@ -121,7 +121,7 @@ def planned(path: Path) -> None:
 
 
 def scanned(path: Path) -> None:
-    scan(path, lambda name, attributes, line: None, error=UserError)
+    scan(path, lambda name, attributes: None, error=UserError)
 
 
 def sumo_counts(path: Path) -> None:

@@ -159,7 +159,7 @@ def test_a_bare_network_is_read_once_and_drives_as_if_read_twice(
     net = tmp_path / "town.net.xml"
     shutil.copy(GRID / "grid.net.xml", net)
     scenario = open_scenario(net)
-    known = known_network(scenario.config)
+    known, _ = known_network(scenario.config)
     assert known is not None
     assert pickle.loads(known.pickled) == read_network(net)
     states = []
@@ -170,7 +170,7 @@ def test_a_bare_network_is_read_once_and_drives_as_if_read_twice(
         ):
             traffic.advance(60.0)
             states.append((traffic.network, traffic.state))
-        monkeypatch.setattr("automotive_cosim.traffic.remote.known_network", lambda config: None)
+        monkeypatch.setattr("automotive_cosim.traffic.remote.known_network", lambda config: (None, None))
     assert states[0] == states[1]
 
 

@@ -52,7 +52,7 @@ def read_capacity(net: Path, additional: Iterable[Path] = ()) -> Capacity:
     programs: dict[str, list[tuple[float, str]] | None] = {}
     edge = program = ""
 
-    def start(tag: str, attributes: dict[str, str], line: int) -> None:
+    def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal edge, program
         match tag:
             case "edge":
