@@ -42,17 +42,17 @@ def countries_near(lon_deg: float, lat_deg: float) -> frozenset[str]:
 def is_near(area: shapely.Geometry, lon_deg: float, lat_deg: float) -> bool:
     """Whether an area in degrees lies within two kilometres."""
     east, north = metres_per_degree_east(lat_deg), METRES_PER_DEGREE
-    box = shapely.box(
-        lon_deg - NEAR_BORDER_M / east,
-        lat_deg - NEAR_BORDER_M / north,
-        lon_deg + NEAR_BORDER_M / east,
-        lat_deg + NEAR_BORDER_M / north,
-    )
-    around = shapely.intersection(area, box)
+    around = shapely.intersection(area, shapely.box(*_within_reach(lon_deg, lat_deg)))
     if around.is_empty:
         return False
     in_metres = shapely.transform(around, lambda points: (points - (lon_deg, lat_deg)) * (east, north))
     return bool(in_metres.distance(shapely.Point(0, 0)) <= NEAR_BORDER_M)
+
+
+def _within_reach(lon_deg: float, lat_deg: float) -> tuple[float, float, float, float]:
+    """West, south, east and north of what may lie within two kilometres, in degrees."""
+    east_deg, north_deg = NEAR_BORDER_M / metres_per_degree_east(lat_deg), NEAR_BORDER_M / METRES_PER_DEGREE
+    return lon_deg - east_deg, lat_deg - north_deg, lon_deg + east_deg, lat_deg + north_deg
 
 
 def country_at(zone: str, lon_deg: float, lat_deg: float) -> str:
@@ -159,6 +159,8 @@ class Atlas:
             for name in sorted(path.name for path in folder.iterdir() if path.suffix == ".toml"):
                 self._files.setdefault(name.removesuffix(".toml"), folder / name)
         self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
+        self._boxes: dict[str, tuple[tuple[Jurisdiction, tuple[float, ...]], ...]] = {}
+        """By country, its parts and itself with the bounds of each: west, south, east, north."""
         self._last = NOWHERE
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -181,18 +183,20 @@ class Atlas:
         zone = tzfpy.get_tz(lon_deg, lat_deg)
         country = country_at(zone, lon_deg, lat_deg)
         layers = tuple(self._layers(LAW_OF.get(country, country), lon_deg, lat_deg))
+        near = self._neighbours(lon_deg, lat_deg, country, layers)
+        last = self._last
+        if (zone, country, layers, near) == (last.time_zone, last.country, last.layers, last.near_border_to):
+            return last  # drives keep their places, and nearly all are the same
         inner = {layer.kind: layer.name for layer in layers if country not in LAW_OF}
-        found = Place(
+        self._last = Place(
             country=country,
             country_name=inner.get("country", _country_names().get(country, "")),
             region=inner.get("region", ""),
             city=inner.get("city", ""),
             time_zone=zone,
-            near_border_to=self._neighbours(lon_deg, lat_deg, country, layers),
+            near_border_to=near,
             layers=layers,
         )
-        if found != self._last:  # drives keep their places, and nearly all are the same
-            self._last = found
         return self._last
 
     def country_at(self, lon_deg: float, lat_deg: float) -> str:
@@ -227,18 +231,31 @@ class Atlas:
         return entry
 
     def _layers(self, country: str, lon_deg: float, lat_deg: float) -> Iterator[Jurisdiction]:
-        for entry in self.country(country):
-            if entry.area is None or shapely.contains_xy(entry.area, lon_deg, lat_deg):
+        for entry, (west, south, east, north) in self._boxed(country):
+            within = west <= lon_deg <= east and south <= lat_deg <= north  # shapely takes many times as long
+            if entry.area is None or (within and shapely.contains_xy(entry.area, lon_deg, lat_deg)):
                 yield entry
+
+    def _boxed(self, country: str) -> tuple[tuple[Jurisdiction, tuple[float, ...]], ...]:
+        if country not in self._boxes:
+            everywhere = (-180.0, -90.0, 180.0, 90.0)
+            self._boxes[country] = tuple(
+                (entry, everywhere if entry.area is None else entry.area.bounds) for entry in self.country(country)
+            )
+        return self._boxes[country]
 
     def _neighbours(
         self, lon_deg: float, lat_deg: float, country: str, layers: tuple[Jurisdiction, ...]
     ) -> tuple[str, ...]:
         own = {country, "", *(layer.code for layer in layers)}
+        west, south, east, north = _within_reach(lon_deg, lat_deg)
         regions = {
             entry.code
-            for entry in self.country(country)
-            if entry.kind == "region" and entry.area is not None and is_near(entry.area, lon_deg, lat_deg)
+            for entry, bounds in self._boxed(country)
+            if entry.kind == "region"
+            and entry.area is not None
+            and (bounds[0] <= east and bounds[2] >= west and bounds[1] <= north and bounds[3] >= south)
+            and is_near(entry.area, lon_deg, lat_deg)
         }
         return tuple(sorted((countries_near(lon_deg, lat_deg) | regions) - own))
 
