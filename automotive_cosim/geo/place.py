@@ -26,6 +26,12 @@ NEAR_BORDER_M = 2000.0
 CELL_DEG = 0.05
 """Side of the cells."""
 
+SMALL_DEG = 0.01
+"""Side of the cells that are looked up for the parts of a country."""
+
+MOST_CELLS = 4096
+"""Of these that are kept."""
+
 STEP_M = 400.0
 """Distance between the points of a search."""
 
@@ -42,17 +48,17 @@ def countries_near(lon_deg: float, lat_deg: float) -> frozenset[str]:
 def is_near(area: shapely.Geometry, lon_deg: float, lat_deg: float) -> bool:
     """Whether an area in degrees lies within two kilometres."""
     east, north = metres_per_degree_east(lat_deg), METRES_PER_DEGREE
-    around = shapely.intersection(area, shapely.box(*_within_reach(lon_deg, lat_deg)))
+    box = shapely.box(
+        lon_deg - NEAR_BORDER_M / east,
+        lat_deg - NEAR_BORDER_M / north,
+        lon_deg + NEAR_BORDER_M / east,
+        lat_deg + NEAR_BORDER_M / north,
+    )
+    around = shapely.intersection(area, box)
     if around.is_empty:
         return False
     in_metres = shapely.transform(around, lambda points: (points - (lon_deg, lat_deg)) * (east, north))
     return bool(in_metres.distance(shapely.Point(0, 0)) <= NEAR_BORDER_M)
-
-
-def _within_reach(lon_deg: float, lat_deg: float) -> tuple[float, float, float, float]:
-    """West, south, east and north of what may lie within two kilometres, in degrees."""
-    east_deg, north_deg = NEAR_BORDER_M / metres_per_degree_east(lat_deg), NEAR_BORDER_M / METRES_PER_DEGREE
-    return lon_deg - east_deg, lat_deg - north_deg, lon_deg + east_deg, lat_deg + north_deg
 
 
 def country_at(zone: str, lon_deg: float, lat_deg: float) -> str:
@@ -80,12 +86,12 @@ def _areas(column: int, row: int) -> tuple[tuple[str, shapely.Geometry], ...]:
     return tuple((code, shapely.intersection(_polygon(zone), cell)) for zone, code in sorted(found))
 
 
-def _around(column: int, row: int) -> shapely.Polygon:
+def _around(column: int, row: int, side_deg: float = CELL_DEG) -> shapely.Polygon:
     """The cell and two kilometres on each side."""
-    south, west = row * CELL_DEG, column * CELL_DEG
+    south, west = row * side_deg, column * side_deg
     north_deg = NEAR_BORDER_M / METRES_PER_DEGREE
-    east_deg = NEAR_BORDER_M / metres_per_degree_east(max(abs(south), abs(south + CELL_DEG)) + north_deg)
-    return shapely.box(west - east_deg, south - north_deg, west + CELL_DEG + east_deg, south + CELL_DEG + north_deg)
+    east_deg = NEAR_BORDER_M / metres_per_degree_east(max(abs(south), abs(south + side_deg)) + north_deg)
+    return shapely.box(west - east_deg, south - north_deg, west + side_deg + east_deg, south + side_deg + north_deg)
 
 
 def _zones(column: int, row: int) -> set[tuple[str, str]]:
@@ -159,8 +165,8 @@ class Atlas:
             for name in sorted(path.name for path in folder.iterdir() if path.suffix == ".toml"):
                 self._files.setdefault(name.removesuffix(".toml"), folder / name)
         self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
-        self._boxes: dict[str, tuple[tuple[Jurisdiction, tuple[float, ...]], ...]] = {}
-        """By country, its parts and itself with the bounds of each: west, south, east, north."""
+        self._cells: dict[tuple[str, int, int], tuple[Jurisdiction, ...] | None] = {}
+        """By country and cell, the layers that apply all over it; None if a border of one of them is near."""
         self._last = NOWHERE
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -182,8 +188,14 @@ class Atlas:
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
         zone = tzfpy.get_tz(lon_deg, lat_deg)
         country = country_at(zone, lon_deg, lat_deg)
-        layers = tuple(self._layers(LAW_OF.get(country, country), lon_deg, lat_deg))
-        near = self._neighbours(lon_deg, lat_deg, country, layers)
+        code = LAW_OF.get(country, country)
+        layers = self._layers_of_cell(code, math.floor(lon_deg / SMALL_DEG), math.floor(lat_deg / SMALL_DEG))
+        regions = set[str]()
+        if layers is None:
+            layers = tuple(self._layers(code, lon_deg, lat_deg))
+            regions = set(self._regions_near(country, lon_deg, lat_deg))
+        own = {country, "", *(layer.code for layer in layers)}
+        near = tuple(sorted((countries_near(lon_deg, lat_deg) | regions) - own))
         last = self._last
         if (zone, country, layers, near) == (last.time_zone, last.country, last.layers, last.near_border_to):
             return last  # drives keep their places, and nearly all are the same
@@ -231,33 +243,30 @@ class Atlas:
         return entry
 
     def _layers(self, country: str, lon_deg: float, lat_deg: float) -> Iterator[Jurisdiction]:
-        for entry, (west, south, east, north) in self._boxed(country):
-            within = west <= lon_deg <= east and south <= lat_deg <= north  # shapely takes many times as long
-            if entry.area is None or (within and shapely.contains_xy(entry.area, lon_deg, lat_deg)):
+        for entry in self.country(country):
+            if entry.area is None or shapely.contains_xy(entry.area, lon_deg, lat_deg):
                 yield entry
 
-    def _boxed(self, country: str) -> tuple[tuple[Jurisdiction, tuple[float, ...]], ...]:
-        if country not in self._boxes:
-            everywhere = (-180.0, -90.0, 180.0, 90.0)
-            self._boxes[country] = tuple(
-                (entry, everywhere if entry.area is None else entry.area.bounds) for entry in self.country(country)
-            )
-        return self._boxes[country]
+    def _layers_of_cell(self, country: str, column: int, row: int) -> tuple[Jurisdiction, ...] | None:
+        """See ``_cells``: a drive asks every second, and shapely takes as long as a whole place otherwise."""
+        key = country, column, row
+        if key not in self._cells:
+            if len(self._cells) >= MOST_CELLS:
+                self._cells.clear()
+            west, south = column * SMALL_DEG, row * SMALL_DEG
+            cell = shapely.box(west, south, west + SMALL_DEG, south + SMALL_DEG)
+            around = _around(column, row, SMALL_DEG)
+            entries = self.country(country)
+            within = [(each, each.area, around if each.kind == "region" else cell) for each in entries]
+            inner = tuple(each for each, area, box in within if area is None or area.contains_properly(box))
+            outer = [each for each, area, box in within if area is not None and area.disjoint(box)]
+            self._cells[key] = inner if len(inner) + len(outer) == len(entries) else None
+        return self._cells[key]
 
-    def _neighbours(
-        self, lon_deg: float, lat_deg: float, country: str, layers: tuple[Jurisdiction, ...]
-    ) -> tuple[str, ...]:
-        own = {country, "", *(layer.code for layer in layers)}
-        west, south, east, north = _within_reach(lon_deg, lat_deg)
-        regions = {
-            entry.code
-            for entry, bounds in self._boxed(country)
-            if entry.kind == "region"
-            and entry.area is not None
-            and (bounds[0] <= east and bounds[2] >= west and bounds[1] <= north and bounds[3] >= south)
-            and is_near(entry.area, lon_deg, lat_deg)
-        }
-        return tuple(sorted((countries_near(lon_deg, lat_deg) | regions) - own))
+    def _regions_near(self, country: str, lon_deg: float, lat_deg: float) -> Iterator[str]:
+        for entry in self.country(country):
+            if entry.kind == "region" and entry.area is not None and is_near(entry.area, lon_deg, lat_deg):
+                yield entry.code
 
 
 @cache
