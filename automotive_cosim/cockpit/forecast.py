@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
-from automotive_cosim.cockpit.cabin import SUN_W, Air, parked_c
+from automotive_cosim.cockpit.cabin import SUN_W, Air, Controls, parked_c
 from automotive_cosim.cockpit.occupants import Seat, breath
 from automotive_cosim.cockpit.signals import HVAC, OUTSIDE
 from automotive_cosim.cockpit.vehicle import Vehicle
@@ -22,10 +23,11 @@ def cabin_c(vehicle: Vehicle, minutes: float, *, climate: bool) -> float:
     """
     now = vehicle.signals
     outside = Air(now[OUTSIDE.TEMPERATURE], now[OUTSIDE.HUMIDITY], 0.0, 0.0)
-    left = replace(
-        vehicle.controls(0.0),
-        fan_pct=100.0 if climate else 0.0,
-        air_conditioning=climate,
-        people=breath(now, without=Seat.DRIVER),
-    )
+    left = _left(vehicle.controls(0.0), climate, breath(now, without=Seat.DRIVER))
     return parked_c(now[HVAC.CABIN_TEMPERATURE], minutes, left, outside, SUN_W * now[OUTSIDE.LIGHT] / 100)
+
+
+@lru_cache(maxsize=256)
+def _left(controls: Controls, climate: bool, people: float) -> Controls:
+    """How a car is left. Cached, as it is asked for every second."""
+    return replace(controls, fan_pct=100.0 if climate else 0.0, air_conditioning=climate, people=people)

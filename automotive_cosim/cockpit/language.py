@@ -105,7 +105,8 @@ def _translated(text: Text, language: str, make: Make) -> str:
 
 def answered(feedback: Feedback, language: str, make: Make = HOME) -> Feedback:
     """The feedback to an action in that language."""
-    return replace(feedback, text=said(feedback.text, language, make))
+    text = said(feedback.text, language, make)
+    return feedback if text is feedback.text else replace(feedback, text=text)
 
 
 def translated(widget: W, language: str, make: Make = HOME) -> W:

@@ -69,8 +69,11 @@ def in_words(given: int) -> str:
 
 def restrictions(gear: str, speed_kmh: float) -> Restriction:
     """Parked: none. Stationary in gear: no video, no setup. Moving: all."""
-    return {
-        Motion.PARKED: Restriction.BASELINE,
-        Motion.IDLING: Restriction.NO_VIDEO | Restriction.NO_SETUP,
-        Motion.MOVING: Restriction.FULLY_RESTRICTED,
-    }[motion(gear, speed_kmh)]
+    return _RESTRICTED[motion(gear, speed_kmh)]
+
+
+_RESTRICTED = {
+    Motion.PARKED: Restriction.BASELINE,
+    Motion.IDLING: Restriction.NO_VIDEO | Restriction.NO_SETUP,
+    Motion.MOVING: Restriction.FULLY_RESTRICTED,
+}

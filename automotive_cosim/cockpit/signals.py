@@ -536,11 +536,6 @@ class Snapshot(Mapping[str, Any]):
         return values
 
 
-def _is_same(before: object, now: object) -> bool:
-    """Whether two values are written alike, so one of them need not be kept: -0.0 is no 0.0."""
-    return before == now and type(before) is type(now) and (bool(now) or str(before) == str(now))
-
-
 def _unless_same(before: tuple[Any, ...], now: tuple[Any, ...]) -> tuple[Any, ...]:
     """A part of a snapshot; that of the one before if nothing in it has changed."""
     return before if len(before) == len(now) and all(map(is_, before, now)) else now
@@ -572,10 +567,14 @@ class Signals:
 
     def __setitem__(self, signal: Signal[T], value: T) -> None:
         before = self._values[signal.path]
-        if before is not value and not _is_same(before, now := signal.check(value)):
-            self._values[signal.path] = now
-            if signal.kind is LeafKind.ACTUATOR:
-                self._commanded = None
+        if before is value:
+            return
+        now: object = signal.check(value)
+        if before == now and type(before) is type(now) and (now or str(before) == str(now)):
+            return  # they are written alike, so one need not be kept: -0.0 is no 0.0
+        self._values[signal.path] = now
+        if signal.kind is LeafKind.ACTUATOR:
+            self._commanded = None
 
     def __iter__(self) -> Iterator[Signal[Any]]:
         return iter(CATALOGUE.values())

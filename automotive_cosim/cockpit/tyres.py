@@ -32,7 +32,7 @@ class Tyres:
         """The tyres some seconds later."""
         settled_c = air_c + WARMING_K_PER_KMH * speed_kmh
         left = math.exp(-dt_s / SETTLING_S)
-        return replace(self, temperature_c=settled_c + (self.temperature_c - settled_c) * left)
+        return Tyres(self.cold_kpa, settled_c + (self.temperature_c - settled_c) * left)
 
     def changed(self, tyre: int, pressure_kpa: Callable[[float], float]) -> Tyres:
         """The tyres with another cold pressure in one of them, given its present one."""

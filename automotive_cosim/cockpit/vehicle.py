@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any, TypeVar
 
 from automotive_cosim.cockpit.cabin import AIR_CP, BLOWER_FULL, Air, Controls, sweeps_per_minute
@@ -25,6 +26,7 @@ from automotive_cosim.cockpit.signals import (
     SEAT,
     Signal,
     Signals,
+    picker,
 )
 from automotive_cosim.contracts.text import say
 
@@ -149,21 +151,7 @@ class Vehicle:
 
     def controls(self, rain_mm_h: float) -> Controls:
         """The cabin's controls, from the switches."""
-        now = self.signals
-        return Controls(
-            set_c=(now[HVAC.DRIVER_TEMPERATURE] + now[HVAC.PASSENGER_TEMPERATURE]) / 2,
-            fan_pct=now[HVAC.FAN_SPEED],
-            air_up=now[HVAC.AIR_DISTRIBUTION] == "UP",
-            air_conditioning=now[HVAC.AIR_CONDITIONING],
-            recirculation=now[HVAC.RECIRCULATION],
-            front_defroster=now[HVAC.FRONT_DEFROSTER] or now[HVAC.MAX_DEFROST],
-            rear_defroster=now[HVAC.REAR_DEFROSTER],
-            front_sweeps_per_minute=sweeps_per_minute(now[BODY.FRONT_WIPER], rain_mm_h),
-            rear_sweeps_per_minute=sweeps_per_minute(now[BODY.REAR_WIPER], rain_mm_h),
-            purifier=now[HVAC.PURIFIER],
-            windows_open=sum(now[opening] for opening in (*WINDOWS, CABIN.SUNROOF)) / 100,
-            people=breath(now),
-        )
+        return _controls(self.signals.picked(_read_controls), rain_mm_h, breath(self.signals))
 
     def use_energy(self, dt_s: float, air: Air, cabin_c: float) -> None:
         """Drains the battery by driving resistance and consumers."""
@@ -277,6 +265,48 @@ class Vehicle:
             + (REAR_WINDOW_W if now[HVAC.REAR_DEFROSTER] else 0.0)
             + SEAT_W * warmth_pct / 100
         )
+
+
+_SET = (
+    *(HVAC.DRIVER_TEMPERATURE, HVAC.PASSENGER_TEMPERATURE, HVAC.FAN_SPEED, HVAC.AIR_DISTRIBUTION),
+    *(HVAC.AIR_CONDITIONING, HVAC.RECIRCULATION, HVAC.FRONT_DEFROSTER, HVAC.MAX_DEFROST, HVAC.REAR_DEFROSTER),
+    *(BODY.FRONT_WIPER, BODY.REAR_WIPER, HVAC.PURIFIER, *WINDOWS, CABIN.SUNROOF),
+)
+_read_controls = picker([signal.path for signal in _SET])
+
+
+@lru_cache(maxsize=1024)
+def _controls(values: tuple[Any, ...], rain_mm_h: float, people: float) -> Controls:
+    """By the values of ``_SET``; cached, because they are mostly the same from second to second."""
+    (
+        driver_c,
+        passenger_c,
+        fan_pct,
+        air,
+        cooled,
+        circulates,
+        clears,
+        dries,
+        rear,
+        front,
+        back,
+        purifies,
+        *open_pct,
+    ) = values
+    return Controls(
+        set_c=(driver_c + passenger_c) / 2,
+        fan_pct=fan_pct,
+        air_up=air == "UP",
+        air_conditioning=cooled,
+        recirculation=circulates,
+        front_defroster=clears or dries,
+        rear_defroster=rear,
+        front_sweeps_per_minute=sweeps_per_minute(front, rain_mm_h),
+        rear_sweeps_per_minute=sweeps_per_minute(back, rain_mm_h),
+        purifier=purifies,
+        windows_open=sum(open_pct) / 100,
+        people=people,
+    )
 
 
 def _meets(signal: Signal[Any], value: Any, wanted: Any) -> bool:

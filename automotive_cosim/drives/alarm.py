@@ -55,9 +55,9 @@ class Alarm:
     def see(self, drive: Drive) -> tuple[Noticed, ...]:
         """What has changed at the newest moment. At the first, whatever there is to report."""
         found = []
-        now_s = drive[-1].time_s
+        now, now_s = drive[-1], drive[-1].time_s
         for wake, told in zip(self.wakes, self._told, strict=True):
-            reading = wake.reads(drive)
+            reading = wake.reads(now)
             if reading == told.reading or (reading := _risen(reading, told.reading)) == told.reading:
                 told.differs_since_s = None
                 continue

@@ -91,7 +91,7 @@ TYRES = {
 
 Drive = Sequence[Moment]
 """The moments of a drive so far, one per second."""
-WakeReader = Callable[[Drive], Hashable]
+WakeReader = Callable[[Moment], Hashable]
 """What wakes when it changes to something other than None."""
 
 
@@ -197,11 +197,11 @@ def _step(value: float, size: float, least: float) -> Hashable:
 # --- speed and traffic -----------------------------------------------------------------------------------------
 
 
-def _too_fast(drive: Drive) -> Hashable:
-    limit = _limit_kmh(drive[-1])
-    if limit is None or _kmh(drive[-1]) <= limit + 1.0:
+def _too_fast(now: Moment) -> Hashable:
+    limit = _limit_kmh(now)
+    if limit is None or _kmh(now) <= limit + 1.0:
         return None
-    over = _kmh(drive[-1]) / limit
+    over = _kmh(now) / limit
     return limit, sum(over >= step for step in (1.1, 1.2, 1.3))
 
 
@@ -227,8 +227,8 @@ def in_sight(now: Moment) -> OtherVehicle | None:
     return leader if leader is not None and leader.gap_m <= RADAR_M else None
 
 
-def _leader(drive: Drive) -> Hashable:
-    leader, mps = in_sight(drive[-1]), drive[-1].driving.speed_mps
+def _leader(now: Moment) -> Hashable:
+    leader, mps = in_sight(now), now.driving.speed_mps
     if leader is None or mps < QUEUE_MPS:
         return None
     left_s = leader.time_to_collision_s
@@ -247,11 +247,11 @@ def _leader_words(drive: Drive) -> str:
     return f"{leader.gap_m:.0f} m at {leader.speed_mps * KMH_PER_MPS:.0f} km/h, {gap_s}, {closing}"
 
 
-def _behind(drive: Drive) -> Hashable:
-    blue = drive[-1].sight(SightKind.EMERGENCY_VEHICLE)
+def _behind(now: Moment) -> Hashable:
+    blue = now.sight(SightKind.EMERGENCY_VEHICLE)
     if blue is not None:
         return "blue light", (blue.distance_m or 0.0) <= BLUE_M
-    return "vehicle" if drive[-1].sight(SightKind.VEHICLE_BEHIND) is not None else None
+    return "vehicle" if now.sight(SightKind.VEHICLE_BEHIND) is not None else None
 
 
 def _behind_words(drive: Drive) -> str:
@@ -281,8 +281,7 @@ def _steps(away_m: float, due_m: float, now: Moment) -> int:
     return 0 if mps < QUEUE_MPS else sum(away_m <= due_m + seconds * mps for seconds in BEFORE_S)
 
 
-def _next_limit(drive: Drive) -> Hashable:
-    now = drive[-1]
+def _next_limit(now: Moment) -> Hashable:
     limit, away_m = now.driving.ahead.next_limit, now.driving.ahead.next_limit_distance_m
     if limit is None or not limit.is_posted or limit.kmh is None or away_m is None or away_m > HORIZON_M:
         return None
@@ -318,8 +317,7 @@ def _ahead(
         more: what else there is to read, within it or ahead of it.
     """
 
-    def reads(drive: Drive) -> Hashable:
-        now = drive[-1]
+    def reads(now: Moment) -> Hashable:
         far_m = away_m(now)
         if far_m is None:
             return None
@@ -410,15 +408,15 @@ def _weather_words(drive: Drive) -> str:
     return f"{weather_words(weather.weather_code)}, visibility {weather.visibility:.0f} m, {trend}"
 
 
-def _road_words(drive: Drive) -> str:
-    road = drive[-1].driving.road
+def _road(now: Moment) -> str:
+    road = now.driving.road
     zone = ", school zone" if road.school_zone else ""
     hours = f", another limit {road.limit_hours}" if road.limit_hours else ""
     return f"{road.road_class.replace('_', ' ') or 'road'}{zone}{hours}"
 
 
-def _grip(drive: Drive) -> Hashable:
-    steps = sum(drive[-1].driving.road.friction < step for step in GRIP_STEPS)
+def _grip(now: Moment) -> Hashable:
+    steps = sum(now.driving.road.friction < step for step in GRIP_STEPS)
     return Level((steps,)) if steps else None
 
 
@@ -496,10 +494,10 @@ def _spare_m(now: Moment) -> float:
     return float(now.signals[ENERGY.RANGE.path]) - now.driving.ahead.route_left_m
 
 
-def _range(drive: Drive) -> Hashable:
-    spare_m = _spare_m(drive[-1])
+def _range(now: Moment) -> Hashable:
+    spare_m = _spare_m(now)
     steps = sum(spare_m <= step_m for step_m in (5000.0, 2000.0))
-    return steps or (drive[-1].signals[ENERGY.LEVEL.path] < 20.0 or None)
+    return steps or (now.signals[ENERGY.LEVEL.path] < 20.0 or None)
 
 
 def _range_words(drive: Drive) -> str:
@@ -531,12 +529,8 @@ def _place_words(drive: Drive) -> str:
     return f"{now.context.country}, signs in {now.context.speed_unit}, the car shows {shown}"
 
 
-def _of(read: Callable[[Moment], Hashable]) -> WakeReader:
-    return lambda drive: read(drive[-1])
-
-
 WAKES: tuple[Wake, ...] = (
-    Wake("limit", "the speed limit changes", _of(_read_kmh), _limit_words),
+    Wake("limit", "the speed limit changes", _read_kmh, _limit_words),
     Wake(
         "speed",
         "the car has been above the limit for three seconds, and each 10 % more",
@@ -572,25 +566,30 @@ WAKES: tuple[Wake, ...] = (
     _reported(SightKind.ROADWORKS, "roadworks"),
     _reported(SightKind.CLOSURE, "a closed road"),
     _reported(SightKind.SCHOOL_ZONE, "a school zone"),
-    Wake("road", "another class of road, a school zone, other hours of a limit", _road_words, _road_words),
+    Wake(
+        "road",
+        "another class of road, a school zone, other hours of a limit",
+        _road,
+        lambda drive: _road(drive[-1]),
+    ),
     Wake(
         "light",
         "day, twilight, night; into or out of a tunnel",
-        _of(lambda now: (now.context.sun and now.context.sun.darkness, now.driving.road.in_tunnel)),
+        lambda now: (now.context.sun and now.context.sun.darkness, now.driving.road.in_tunnel),
         _light_words,
     ),
-    Wake("lamps", "a lamp goes on or off", _of(_lamps), _lamp_words),
+    Wake("lamps", "a lamp goes on or off", _lamps, _lamp_words),
     Wake(
         "weather",
         "other weather, another class of visibility, sight for 10 km/h less or more, frost",
-        _of(_weather),
+        _weather,
         _weather_words,
     ),
     Wake("grip", "the grip of the road falls below 0.9, 0.7, 0.5 and 0.3 of that of a dry one", _grip, _grip_words),
     Wake(
         "glass",
         "the windshield fogs, every tenth",
-        _of(lambda now: _step(now.signals[GLASS.WINDSHIELD_FOG.path], MIST, MIST)),
+        lambda now: _step(now.signals[GLASS.WINDSHIELD_FOG.path], MIST, MIST),
         lambda drive: (
             f"windshield fogged by {_share(fog)}, {_signal_trend(drive, GLASS.WINDSHIELD_FOG.path, 0.01)}"
             if (fog := drive[-1].signals[GLASS.WINDSHIELD_FOG.path]) >= MIST / 2
@@ -600,7 +599,7 @@ WAKES: tuple[Wake, ...] = (
     Wake(
         "rain",
         "rain on the windshield with the wipers off, every tenth",
-        _of(lambda now: _step(_unwiped(now), MIST, MIST)),
+        lambda now: _step(_unwiped(now), MIST, MIST),
         lambda drive: (
             f"windshield covered by {_share(film)}, {_signal_trend(drive, GLASS.WINDSHIELD_FILM.path, 0.01)}, "
             "wipers off"
@@ -612,7 +611,7 @@ WAKES: tuple[Wake, ...] = (
     Wake(
         "tyres",
         "the softest tyre, below 240 kPa, every 10 kPa that it loses",
-        _of(lambda now: Nearness("tyre", _soft_steps(_lowest_kpa(now)))),
+        lambda now: Nearness("tyre", _soft_steps(_lowest_kpa(now))),
         _tyre_words,
     ),
     Wake(
@@ -624,50 +623,50 @@ WAKES: tuple[Wake, ...] = (
     Wake(
         "belt",
         "the belt of a seat that is taken is opened, or the car sets off without it",
-        _of(lambda now: _rolling(now, _unbelted(now)) if _unbelted(now) else None),
+        lambda now: _rolling(now, _unbelted(now)) if _unbelted(now) else None,
         lambda drive: f"open: {_who(_unbelted(drive[-1]))}{_rolls(drive[-1])}" if _unbelted(drive[-1]) else "",
     ),
     Wake(
         "open",
         "a door, flap or window is open, or the car sets off with it",
-        _of(lambda now: _rolling(now, _open_parts(now)) if _open_parts(now) else None),
+        lambda now: _rolling(now, _open_parts(now)) if _open_parts(now) else None,
         lambda drive: f"{', '.join(parts)}{_rolls(drive[-1])}" if (parts := _open_parts(drive[-1])) else "",
     ),
     Wake(
         "phone",
         "the driver takes a phone, in the hand or in its cradle, or sets off with it",
-        _of(lambda now: None if _phone(now) == "AWAY" else _rolling(now, _phone(now))),
+        lambda now: None if _phone(now) == "AWAY" else _rolling(now, _phone(now)),
         lambda drive: f"{PHONE[phone]}{_rolls(drive[-1])}" if (phone := _phone(drive[-1])) in PHONE else "",
     ),
     Wake(
         "driving time",
         "an hour of driving without a break, and every quarter more",
-        _of(lambda now: None if (hours := _hours(now)) is None else int(hours * 4)),
+        lambda now: None if (hours := _hours(now)) is None else int(hours * 4),
         lambda drive: "" if (hours := _hours(drive[-1])) is None else f"{hours:.2f} h without a break",
     ),
     Wake(
         "parked",
         "the driver parks the car on the way, leaves it, or comes back",
-        _of(lambda now: (_is_left(now), _others(now)) if now.signals[MOTION.GEAR.path] == "P" else None),
+        lambda now: (_is_left(now), _others(now)) if now.signals[MOTION.GEAR.path] == "P" else None,
         _parked_words,
     ),
-    Wake("place", "another country", _of(lambda now: now.context.country or None), _place_words),
+    Wake("place", "another country", lambda now: now.context.country or None, _place_words),
     Wake(
         "asked",
         "somebody aboard asks for something",
-        _of(lambda now: len(now.asked) or None),
+        lambda now: len(now.asked) or None,
         lambda drive: f"{drive[-1].time_s - drive[-1].asked[-1].at_s:.0f} s ago" if drive[-1].asked else "",
     ),
     Wake(
         "call",
         "the phone rings",
-        _of(lambda now: now.signals[CALL.RINGING.path] or None),
+        lambda now: now.signals[CALL.RINGING.path] or None,
         lambda drive: "ringing" if drive[-1].signals[CALL.RINGING.path] else "",
     ),
     Wake(
         "message",
         "a message arrives",
-        _of(lambda now: now.signals[CALL.UNREAD.path] or None),
+        lambda now: now.signals[CALL.UNREAD.path] or None,
         lambda drive: f"{unread:.0f} unread" if (unread := drive[-1].signals[CALL.UNREAD.path]) else "",
     ),
 )

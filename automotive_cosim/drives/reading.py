@@ -14,6 +14,7 @@ from automotive_cosim.contracts import Action, ActionType, Observation, VehicleS
 
 KM_PER_MILE = 1.609344
 _SPEED = re.compile(r"(\d+(?:\.\d+)?) (km/h|mph)")
+CHANGED = " (changed)"
 _AWAY = re.compile(r"\bin (\d+) m\b")
 _FALLING = ("rain", "drizzle", "snow", "thunderstorm", "hail")
 
@@ -114,7 +115,8 @@ class Gathered:
 
     def away_m(self, name: str) -> float | None:
         """Distance to what a reading speaks of; None without one."""
-        found = _AWAY.search(self.words(name))
+        words = self.words(name)
+        found = _AWAY.search(words) if words else None
         return None if found is None else float(found[1])
 
     @property
@@ -143,8 +145,7 @@ class Reader:
             self._answers[self._asked] = _answer(seen.feedback.text, self._asked[1])
             self._asked = None
         known = self._last = _read(seen, seen.vehicle, seen.context)
-        known.noticed = _noticed(seen.vehicle.noticed or "")
-        known.changed = frozenset(re.findall(r"^(.+) \(changed\): ", seen.vehicle.noticed or "", re.MULTILINE))
+        known.noticed, known.changed = _noticed(seen.vehicle.noticed or "")
         self._cross(known, last)
         told = {label: line for (place, label), line in self._answers.items() if place == known.place}
         known.law = {**told, **known.law}
@@ -170,10 +171,12 @@ class Reader:
         return Action(ActionType.QUERY, text=label)
 
 
-def _noticed(text: str) -> dict[str, str]:
-    """Each line's words by its name, without those of what has ended."""
-    lines = (line.partition(": ") for line in text.splitlines())
-    return {name.removesuffix(" (changed)"): words for name, _, words in lines if not words.startswith("ended")}
+def _noticed(text: str) -> tuple[dict[str, str], frozenset[str]]:
+    """Each line's words by its name, without those of what has ended, and the names that are marked as changed."""
+    lines = [line.partition(": ") for line in text.splitlines()]
+    changed = frozenset(name.removesuffix(CHANGED) for name, _, _ in lines if name.endswith(CHANGED))
+    noticed = {name.removesuffix(CHANGED): words for name, _, words in lines if not words.startswith("ended")}
+    return noticed, changed
 
 
 def _answer(text: str, label: str) -> LawLine:

@@ -10,10 +10,10 @@ change is an event.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Self
 
-from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
+from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, Observation, VehicleState
 from automotive_cosim.contracts.given import Hearing
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
@@ -32,8 +32,11 @@ from automotive_cosim.episode.session import Baseline, JudgedSession, TakesTime,
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.traffic.base import Event
+from automotive_cosim.traffic.records import changer
 from automotive_cosim.voice.table import check
 
+_with_readings = changer(VehicleState, "noticed", "leader_time_to_collision_s")
+_on_watch = changer(Observation, "vehicle", "on_watch")
 CHANGED = "something changed"
 """What a result says of all that ends a wait; the readings say what it was."""
 READ_BACK = 20
@@ -96,6 +99,8 @@ class DriveSession(JudgedSession):
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
+    _so_far: tuple[tuple[float, ...], Judgement] = (), Judgement((), ())
+    """What was last judged: the same until there is another act, event or end of a copy, or an event goes on."""
     judged: bool = True
     """Whether it is compared with drives with nobody at the cockpit, and judged; each of those is a simulation."""
     _against: Against | None = None
@@ -147,7 +152,14 @@ class DriveSession(JudgedSession):
     def judged_so_far(self) -> Judgement:
         """The judgement if the drive were over now, without what the do-nothing run has more; the final one at the
         end."""
-        return self.judgement or self._judged()
+        if self.judgement is not None:
+            return self.judgement
+        events = self.events
+        last_s, ended = max((event.last_s for event in events), default=0.0), sum(event.ended for event in events)
+        now = len(self.acts), len(self.due_anyway), len(events), ended, last_s
+        if now != self._so_far[0]:
+            self._so_far = now, self._judged()
+        return self._so_far[1]
 
     @property
     def harms(self) -> tuple[Harm, Harm]:
@@ -240,8 +252,8 @@ class DriveSession(JudgedSession):
             lines = [noticed(self.moments[-READ_BACK:], self.marked), *driver_line(self.moments[-1], in_force)]
             ttc_s = vehicle.leader_time_to_collision_s
             ttc_s = None if ttc_s is None or ttc_s > FAR_S else ttc_s
-            vehicle = replace(vehicle, noticed="\n".join(lines), leader_time_to_collision_s=ttc_s)
-        self.observation = replace(self.observation, vehicle=vehicle, on_watch=True)
+            vehicle = _with_readings(vehicle, "\n".join(lines), ttc_s)
+        self.observation = _on_watch(self.observation, vehicle, True)
 
     @property
     def _is_woken(self) -> bool:

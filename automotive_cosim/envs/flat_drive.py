@@ -24,7 +24,6 @@ import re
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import starmap
 from math import inf, log1p, log10
 from typing import Any, NamedTuple
 
@@ -87,6 +86,7 @@ def _reduced(known: Gathered) -> float | None:
     return min((line.kmh for line in lines if line.kmh is not None), default=None)
 
 
+@lru_cache(maxsize=1024)
 def _under_m(rule: str) -> float:
     """The sight below which a rule holds; infinite for a rule without one."""
     found = re.search(r"visibility under (\d+) m", rule)
@@ -109,7 +109,8 @@ def _share(name: str, full: float, pattern: str = r"(\d+\.?\d*)") -> Feature:
     search = re.compile(pattern).search
 
     def share(known: Gathered) -> float:
-        found = search(known.words(name))
+        words = known.words(name)
+        found = search(words) if words else None
         return 0.0 if found is None else float(found[1]) / full
 
     return share
@@ -158,12 +159,18 @@ def _blind(known: Gathered) -> float:
 
 
 def _aboard(known: Gathered, pattern: str) -> int:
-    return len(re.findall(pattern, known.vehicle.aboard))
+    return len(_found(pattern, known.vehicle.aboard))
+
+
+@lru_cache(maxsize=1024)
+def _found(pattern: str, text: str) -> tuple[str, ...]:
+    """Cached, as what is read is mostly the same from second to second."""
+    return tuple(re.findall(pattern, text))
 
 
 def _softest(known: Gathered) -> float:
     """The softest tyre below 250 kPa, of 100."""
-    pressures = [float(kpa) for kpa in re.findall(r"(?:left|right) (\d+)", known.words("tyres"))]
+    pressures = map(float, _found(r"(?:left|right) (\d+)", known.words("tyres")))
     return (250 - min(pressures, default=250.0)) / 100
 
 
@@ -231,7 +238,8 @@ def _reading(alert: AlertKind, name: str, pattern: str = ".+") -> Sign:
     search = re.compile(pattern).search
 
     def seen(known: Gathered, numbers: Mapping[str, float]) -> Hashable:
-        found = search(known.words(name))
+        words = known.words(name)
+        found = search(words) if words else None
         return None if found is None else found[0]
 
     return Sign(alert, seen)
@@ -299,15 +307,17 @@ class DriveNumbers:
         known = self._reader.read(seen)
         assert known is not None  # the channels are always given
         numbers = {name: feature(known) for name, feature in FEATURES.items()}
-        texts = (known.road, known.weather), tuple(starmap(_rule_words, known.law.items()))
-        for name, sign in SIGNS.items():
-            self._see(name, sign.seen(known, numbers), known.time_s)
-        ages_s = (known.time_s - self._since[name][1] if name in self._since else 0.0 for name in SIGNS)
+        texts = (known.road, known.weather), tuple(_rule_words(label, law.text) for label, law in known.law.items())
+        since, told, shown_s, now_s = self._since, self._told, self._shown_s, known.time_s
+        for name, (_, seen_in) in SIGNS.items():
+            what = seen_in(known, numbers)
+            if what is not None or name in since or name in told:
+                self._see(name, what, now_s)
         kept = [
-            *(float(name in known.changed) for name in READINGS),
-            *(_age(age_s) if age_s else 0.0 for age_s in ages_s),
-            *(float(name in self._since and name not in self._told) for name in SIGNS),
-            *(_age(known.time_s - self._shown_s[kind]) if kind in self._shown_s else 1.0 for kind in KINDS),
+            *map(float, map(known.changed.__contains__, READINGS)),
+            *(_age(now_s - since[name][1]) if name in since else 0.0 for name in SIGNS),
+            *(float(name in since and name not in told) for name in SIGNS),
+            *(_age(now_s - shown_s[kind]) if kind in shown_s else 1.0 for kind in KINDS),
         ]
         read = np.array([*numbers.values()], np.float32)
         np.minimum(np.maximum(read, -1.0, out=read), 1.0, out=read)
@@ -341,8 +351,8 @@ def _words(lines: tuple[str, ...], slots: int) -> npt.NDArray[np.float32]:
 
 
 @lru_cache(maxsize=4096)
-def _rule_words(label: str, line: LawLine) -> str:
-    return f"{label} {line.said}"
+def _rule_words(label: str, text: str) -> str:
+    return f"{label} {LawLine(text, None, False).said}"
 
 
 @lru_cache(maxsize=4096)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from enum import StrEnum
+from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
 from annotated_types import Ge, Gt, Le
 
-from automotive_cosim.contracts.given import Hearing, Language
+from automotive_cosim.contracts.given import GeoInput, Hearing, Language
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.settings import EpisodeSettings
 from automotive_cosim.errors import SetupError, UserError, install_hint
@@ -74,8 +75,13 @@ class SessionSetup:
     @property
     def given(self) -> frozenset[Channel]:
         """The channels that the agent gets."""
-        see = self.conditions.see
-        return (self.channels | see.added(self.channels)) - self.conditions.geo.withheld - see.withheld
+        return _given(self.channels, self.conditions.see, self.conditions.geo)
+
+
+@lru_cache(maxsize=64)
+def _given(channels: frozenset[Channel], see: See, geo: GeoInput) -> frozenset[Channel]:
+    """Cached, as it is asked for with every observation."""
+    return (channels | see.added(channels)) - geo.withheld - see.withheld
 
 
 @dataclass(frozen=True, slots=True)

@@ -329,7 +329,7 @@ def _kmh(limit: Rule) -> float:
 
 def _time(context: GeoContext) -> str:
     time = context.local_time
-    clock = f"{time:%Y-%m-%d %H:%M}, {_DAYS[time.weekday()]}"
+    clock = f"{time.isoformat(' ', 'minutes')[:16]}, {_DAYS[time.weekday()]}"
     sun = context.sun
     if sun is None:
         return clock

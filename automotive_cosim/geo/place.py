@@ -26,6 +26,12 @@ NEAR_BORDER_M = 2000.0
 CELL_DEG = 0.05
 """Side of the cells."""
 
+SMALL_DEG = 0.01
+"""Side of the cells that are looked up for the parts of a country."""
+
+MOST_CELLS = 4096
+"""Of these that are kept."""
+
 STEP_M = 400.0
 """Distance between the points of a search."""
 
@@ -80,12 +86,12 @@ def _areas(column: int, row: int) -> tuple[tuple[str, shapely.Geometry], ...]:
     return tuple((code, shapely.intersection(_polygon(zone), cell)) for zone, code in sorted(found))
 
 
-def _around(column: int, row: int) -> shapely.Polygon:
+def _around(column: int, row: int, side_deg: float = CELL_DEG) -> shapely.Polygon:
     """The cell and two kilometres on each side."""
-    south, west = row * CELL_DEG, column * CELL_DEG
+    south, west = row * side_deg, column * side_deg
     north_deg = NEAR_BORDER_M / METRES_PER_DEGREE
-    east_deg = NEAR_BORDER_M / metres_per_degree_east(max(abs(south), abs(south + CELL_DEG)) + north_deg)
-    return shapely.box(west - east_deg, south - north_deg, west + CELL_DEG + east_deg, south + CELL_DEG + north_deg)
+    east_deg = NEAR_BORDER_M / metres_per_degree_east(max(abs(south), abs(south + side_deg)) + north_deg)
+    return shapely.box(west - east_deg, south - north_deg, west + side_deg + east_deg, south + side_deg + north_deg)
 
 
 def _zones(column: int, row: int) -> set[tuple[str, str]]:
@@ -159,6 +165,8 @@ class Atlas:
             for name in sorted(path.name for path in folder.iterdir() if path.suffix == ".toml"):
                 self._files.setdefault(name.removesuffix(".toml"), folder / name)
         self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
+        self._cells: dict[tuple[str, int, int], tuple[Jurisdiction, ...] | None] = {}
+        """By country and cell, the layers that apply all over it; None if a border of one of them is near."""
         self._last = NOWHERE
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -180,19 +188,27 @@ class Atlas:
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
         zone = tzfpy.get_tz(lon_deg, lat_deg)
         country = country_at(zone, lon_deg, lat_deg)
-        layers = tuple(self._layers(LAW_OF.get(country, country), lon_deg, lat_deg))
+        code = LAW_OF.get(country, country)
+        layers = self._layers_of_cell(code, math.floor(lon_deg / SMALL_DEG), math.floor(lat_deg / SMALL_DEG))
+        regions = set[str]()
+        if layers is None:
+            layers = tuple(self._layers(code, lon_deg, lat_deg))
+            regions = set(self._regions_near(country, lon_deg, lat_deg))
+        own = {country, "", *(layer.code for layer in layers)}
+        near = tuple(sorted((countries_near(lon_deg, lat_deg) | regions) - own))
+        last = self._last
+        if (zone, country, layers, near) == (last.time_zone, last.country, last.layers, last.near_border_to):
+            return last  # drives keep their places, and nearly all are the same
         inner = {layer.kind: layer.name for layer in layers if country not in LAW_OF}
-        found = Place(
+        self._last = Place(
             country=country,
             country_name=inner.get("country", _country_names().get(country, "")),
             region=inner.get("region", ""),
             city=inner.get("city", ""),
             time_zone=zone,
-            near_border_to=self._neighbours(lon_deg, lat_deg, country, layers),
+            near_border_to=near,
             layers=layers,
         )
-        if found != self._last:  # drives keep their places, and nearly all are the same
-            self._last = found
         return self._last
 
     def country_at(self, lon_deg: float, lat_deg: float) -> str:
@@ -231,16 +247,26 @@ class Atlas:
             if entry.area is None or shapely.contains_xy(entry.area, lon_deg, lat_deg):
                 yield entry
 
-    def _neighbours(
-        self, lon_deg: float, lat_deg: float, country: str, layers: tuple[Jurisdiction, ...]
-    ) -> tuple[str, ...]:
-        own = {country, "", *(layer.code for layer in layers)}
-        regions = {
-            entry.code
-            for entry in self.country(country)
-            if entry.kind == "region" and entry.area is not None and is_near(entry.area, lon_deg, lat_deg)
-        }
-        return tuple(sorted((countries_near(lon_deg, lat_deg) | regions) - own))
+    def _layers_of_cell(self, country: str, column: int, row: int) -> tuple[Jurisdiction, ...] | None:
+        """See ``_cells``: a drive asks every second, and shapely takes as long as a whole place otherwise."""
+        key = country, column, row
+        if key not in self._cells:
+            if len(self._cells) >= MOST_CELLS:
+                self._cells.clear()
+            west, south = column * SMALL_DEG, row * SMALL_DEG
+            cell = shapely.box(west, south, west + SMALL_DEG, south + SMALL_DEG)
+            around = _around(column, row, SMALL_DEG)
+            entries = self.country(country)
+            within = [(each, each.area, around if each.kind == "region" else cell) for each in entries]
+            inner = tuple(each for each, area, box in within if area is None or area.contains_properly(box))
+            outer = [each for each, area, box in within if area is not None and area.disjoint(box)]
+            self._cells[key] = inner if len(inner) + len(outer) == len(entries) else None
+        return self._cells[key]
+
+    def _regions_near(self, country: str, lon_deg: float, lat_deg: float) -> Iterator[str]:
+        for entry in self.country(country):
+            if entry.kind == "region" and entry.area is not None and is_near(entry.area, lon_deg, lat_deg):
+                yield entry.code
 
 
 @cache

@@ -31,7 +31,10 @@ class Darkness(StrEnum):
     @classmethod
     def at(cls, elevation_deg: float) -> Darkness:
         """How dark the sky is with the sun's centre at an elevation."""
-        return next((each for from_deg, each in _DARKNESS_FROM_DEG if elevation_deg > from_deg), cls.NIGHT)
+        for from_deg, darkness in _DARKNESS_FROM_DEG:  # a generator takes twice as long
+            if elevation_deg > from_deg:
+                return darkness
+        return cls.NIGHT
 
 
 _DARKNESS_FROM_DEG = (

@@ -34,17 +34,18 @@ def within_budget(all_lines: Iterable[Line], budget_tokens: int) -> str:
     kept: list[str] = []
     tokens = 0
     for line in all_lines:
-        tokens += ceil((len(line.text) + 1) / CHARACTERS_PER_TOKEN)
+        text, cost = _on_one_line(line.text)
+        tokens += cost
         if tokens > budget_tokens:
             break
-        kept.append(_on_one_line(line.text))
+        kept.append(text)
     return "\n".join(kept)
 
 
 @lru_cache(maxsize=1024)
-def _on_one_line(text: str) -> str:
-    """Cached, because most lines are the same from second to second."""
-    return " ".join(text.split())
+def _on_one_line(text: str) -> tuple[str, int]:
+    """The text, and its tokens. Cached, because most lines are the same from second to second."""
+    return " ".join(text.split()), ceil((len(text) + 1) / CHARACTERS_PER_TOKEN)
 
 
 def position(lon_deg: float, lat_deg: float) -> str:

@@ -259,7 +259,8 @@ class Route:
         self._signs = [
             (start_m + edge.length_m, edge.sign) for start_m, edge in zip(starts_m, edges, strict=True) if edge.sign
         ]
-        self._rest = tuple(self.edge_ids[index:] for index in range(len(edges)))
+        self._rest: dict[int, tuple[str, ...]] = {}
+        """The edges from one on, the same ones as long as the car is on it."""
         self._slow = flow.slow_edges()
         self._incidents = incidents
         self._standing_m = sorted(
@@ -297,6 +298,8 @@ class Route:
             position_m: from the start of the route.
         """
         leg = self._legs[index]
+        if index not in self._rest:
+            self._rest[index] = self.edge_ids[index:]
         left_m = max(0.0, self.length_m - position_m)
         on_edge_m = max(0.0, leg.start_m + leg.edge.length_m - position_m)
         eta_s = on_edge_m / leg.speed_mps + leg.time_after_s

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from copy import copy
 from datetime import datetime
 from itertools import count
@@ -54,6 +55,13 @@ class IncidentTools:
         other.ego_id, other.sensor = ego_id, sensor
         other.script = VehicleScript(self.sumo, ego_id)
         return other
+
+    @property
+    def is_there(self) -> bool:
+        """Whether the car is on the road; to read SUMO's list of all vehicles takes much longer."""
+        with suppress(*self.sumo.refusals):
+            return bool(self.sumo.edge_of(self.ego_id))
+        return False
 
     @property
     def weather(self) -> str:

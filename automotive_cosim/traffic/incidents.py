@@ -119,8 +119,8 @@ class Incidents:
         told: list[str] = []
         going_on = [entry for entry in self._entries if not entry.is_over]
         if any(isinstance(entry.incident, EgoIncident) for entry in going_on):
-            there = frozenset(self._tools.sumo.vehicle_ids())
-            going_on = [entry for entry in going_on if not self._has_left(entry, there)]
+            left = {tools.ego_id for tools in (self._tools, *self._others) if not tools.is_there}
+            going_on = [entry for entry in going_on if not self._has_left(entry, left)]
         for entry in going_on:
             told += self._proceed(entry, now_s - self._begun_s(entry), local_time)
         self._tools.follow(local_time)
@@ -145,11 +145,11 @@ class Incidents:
         """From when the times of an incident count."""
         return self._zero_s if entry.zero_s is None else entry.zero_s
 
-    def _has_left(self, entry: _Entry, there: frozenset[str]) -> bool:
+    def _has_left(self, entry: _Entry, left: set[str]) -> bool:
         """Whether the car that it goes by has arrived or was removed, while others drive on: nothing happens around
         it any more."""
         tools = entry.tools
-        return isinstance(entry.incident, EgoIncident) and tools.sensor is not None and tools.ego_id not in there
+        return isinstance(entry.incident, EgoIncident) and tools.sensor is not None and tools.ego_id in left
 
     def _local_time(self, now_s: float) -> datetime:
         """The local time: the scenario's in the warm-up, the ego's once it is driving."""

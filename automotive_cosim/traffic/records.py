@@ -40,14 +40,15 @@ def maker(kind: type[Noun]) -> type[Noun]:
     return cast("type[Noun]", make)
 
 
-def changer(kind: type[Noun], name: str) -> Callable[[Noun, object], Noun]:
-    """A function that copies a record of a frozen dataclass with slots with another value in one field."""
+def changer(kind: type[Noun], *changes: str) -> Callable[..., Noun]:
+    """A function that copies a record of a frozen dataclass with slots, with other values in some fields."""
     names = [field.name for field in fields(cast(Any, kind))]
-    read, at, make = attrgetter(*names), names.index(name), maker(kind)
+    read, places, make = attrgetter(*names), [names.index(name) for name in changes], maker(kind)
 
-    def changed(record: Noun, value: object) -> Noun:
+    def changed(record: Noun, *new: object) -> Noun:
         values = list(read(record))
-        values[at] = value
+        for place, value in zip(places, new, strict=True):
+            values[place] = value
         return make(*values)
 
     return changed

@@ -75,6 +75,8 @@ class Router:
         """Travel times of the news that was listened to last."""
         self._changed: tuple[str, ...] = ()
         """Edges whose weight differs from free roads."""
+        self._written_s: dict[str, float] = {}
+        """The weights that SUMO has."""
         self._follow_limits()
 
     def quickest(self, start: str, goals: Iterable[str], via: Sequence[str] = ()) -> tuple[str, ...]:
@@ -202,8 +204,11 @@ class Router:
         self._changed = tuple(edges_s)
 
     def _write(self, edges_s: Mapping[str, float]) -> None:
+        written_s = self._written_s
         for edge_id, seconds in edges_s.items():
-            self._sumo.adapt_travel_time(edge_id, seconds, NEVER_S, 2 * NEVER_S)
+            if written_s.get(edge_id) != seconds:
+                written_s[edge_id] = seconds
+                self._sumo.adapt_travel_time(edge_id, seconds, NEVER_S, 2 * NEVER_S)
 
     def _route(self, start: str, goal: str, via: Sequence[str]) -> tuple[float, tuple[str, ...]]:
         """Travel time and edges of the quickest route by the weights; no edges if there is none."""

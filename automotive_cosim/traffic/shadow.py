@@ -13,7 +13,7 @@ then a branch would only compute the same again. The two are driven in parallel;
 from __future__ import annotations
 
 from collections import deque
-from weakref import WeakSet
+from weakref import ref
 
 from automotive_cosim.contracts import (
     Answer,
@@ -33,6 +33,8 @@ Passed = tuple[DrivingState, tuple[Event, ...]]
 
 def by_step(passed: Advance) -> list[Passed]:
     """What passed, step by step."""
+    if not passed.events:
+        return [(state, ()) for state in passed.states]
     events, steps = deque(passed.events), list[Passed]()
     for state in passed.states:
         happened = []
@@ -53,7 +55,7 @@ class SharedTraffic:
         """
         self._traffic = traffic
         self.step_s = step_s
-        self._shadows: WeakSet[Shadow] = WeakSet()
+        self._shadows: list[ref[Shadow]] = []
 
     @property
     def wrapped(self) -> Traffic:
@@ -73,19 +75,19 @@ class SharedTraffic:
 
     def advance(self, duration_s: float) -> Advance:
         passed = self._traffic.advance(duration_s)
-        for shadow in self._shadows:
+        for shadow in self._living():
             shadow.see(passed)
         return passed
 
     def request(self, request: RoadRequest) -> Answer:
         """See ``Traffic.request``; every shadow is independent from here."""
-        for shadow in tuple(self._shadows):
+        for shadow in self._living():
             shadow.part()
         return self._traffic.request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
         options = self._traffic.alternatives(age_s)
-        for shadow in self._shadows:
+        for shadow in self._living():
             shadow.hear(self.state.time_s, age_s, options)
         return options
 
@@ -102,12 +104,16 @@ class SharedTraffic:
     def shadow(self) -> SharedTraffic:
         """An exact copy from this instant, for somebody who makes no requests to the road."""
         shadow = Shadow(self, self.step_s)
-        self._shadows.add(shadow)
+        self._shadows.append(ref(shadow))
         return SharedTraffic(shadow, self.step_s)
 
     def dismiss(self, shadow: Shadow) -> None:
         """Stops reporting to a shadow."""
-        self._shadows.discard(shadow)
+        self._shadows = [each for each in self._shadows if each() is not shadow]
+
+    def _living(self) -> list[Shadow]:
+        """Those that somebody still has; a ``WeakSet`` takes as long as all else of a second's report."""
+        return [shadow for each in self._shadows if (shadow := each()) is not None]
 
     def close(self) -> None:
         """See ``Traffic.close``. A shadow without a simulation of its own cannot continue."""

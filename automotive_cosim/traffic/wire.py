@@ -12,6 +12,7 @@ from automotive_cosim.contracts import (
     Around,
     DrivingState,
     Limit,
+    LimitSource,
     OtherVehicle,
     RoadAhead,
     RoadHere,
@@ -47,6 +48,9 @@ _LIGHT_AT, _ROUTE_AT, _SLOW_AT = (
 )
 _OTHERS = 4
 """The first fields of ``Around`` are other vehicles."""
+_LIMIT_AT, _NEXT_AT = (
+    [f.name for f in fields(kind)].index(name) for kind, name in ((RoadHere, "limit"), (RoadAhead, "next_limit"))
+)
 
 
 def pack_state(state: DrivingState) -> Packed:
@@ -54,7 +58,10 @@ def pack_state(state: DrivingState) -> Packed:
     row, ahead, around = list(_STATE(state)), list(_AHEAD(state.ahead)), _AROUND(state.around)
     light = ahead[_LIGHT_AT]
     ahead[_LIGHT_AT] = light and _LIGHT(light)
-    row[_ROAD_AT] = _ROAD(state.road)
+    ahead[_NEXT_AT] = ahead[_NEXT_AT] and _as_tuple(ahead[_NEXT_AT])
+    road = list(_ROAD(state.road))
+    road[_LIMIT_AT] = _as_tuple(road[_LIMIT_AT])
+    row[_ROAD_AT] = road
     row[_AHEAD_AT] = ahead
     row[_AROUND_AT] = (*(other and _OTHER(other) for other in around[:_OTHERS]), *around[_OTHERS:])
     return tuple(row)
@@ -66,7 +73,10 @@ def unpack_state(packed: Packed) -> DrivingState:
     light = ahead[_LIGHT_AT]
     ahead[_LIGHT_AT] = light and make_light(*_interned(light))
     ahead[_ROUTE_AT], ahead[_SLOW_AT] = _same(ahead[_ROUTE_AT]), _same(ahead[_SLOW_AT])
-    row[_ROAD_AT] = make_road(*_interned(row[_ROAD_AT]))
+    ahead[_NEXT_AT] = ahead[_NEXT_AT] and _limit(*ahead[_NEXT_AT])
+    road = list(_interned(row[_ROAD_AT]))
+    road[_LIMIT_AT] = _limit(*road[_LIMIT_AT])
+    row[_ROAD_AT] = make_road(*road)
     row[_AHEAD_AT] = make_ahead(*ahead)
     others: Packed = tuple(other and make_other(*_interned(other)) for other in around[:_OTHERS])
     row[_AROUND_AT] = make_around(*others, *around[_OTHERS:])
@@ -74,15 +84,18 @@ def unpack_state(packed: Packed) -> DrivingState:
 
 
 def _interned(packed: Packed) -> Packed:
-    """With names and limits that are the same ones as before."""
-    return tuple(
-        intern(each) if type(each) is str else _limit(each) if type(each) is Limit else each for each in packed
-    )
+    """With names that are the same ones as before."""
+    return tuple(intern(each) if type(each) is str else each for each in packed)
+
+
+def _as_tuple(limit: Limit) -> Packed:
+    return limit.mps, limit.source.value
 
 
 @lru_cache(maxsize=512)
-def _limit(limit: Limit) -> Limit:
-    return limit
+def _limit(mps: float | None, source: str) -> Limit:
+    """The same one as before, if it is."""
+    return Limit(mps, LimitSource(source))
 
 
 @lru_cache(maxsize=512)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from zoneinfo import ZoneInfo
 
+import numpy as np
 import pytest
 import shapely
 import tzfpy
@@ -14,7 +15,7 @@ import tzfpy
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import UserError
 from automotive_cosim.geo.climate import climate_norm
-from automotive_cosim.geo.place import Atlas
+from automotive_cosim.geo.place import Atlas, is_near
 from automotive_cosim.geo.sun import Darkness, Sun, elevation_deg, sun_at
 from automotive_cosim.geo.weather import (
     PHENOMENA,
@@ -172,6 +173,18 @@ def test_overseas_france_has_the_law_of_france(atlas: Atlas, lat: float, lon: fl
 
 def test_the_border_of_a_region_is_flagged(atlas: Atlas) -> None:
     assert "GB-WLS" in atlas.place(-2.91, 53.18).near_border_to
+
+
+@pytest.mark.parametrize(("lon", "lat"), [(2.35, 48.86), (-2.9, 52.0), (-3.0, 55.0), (-0.1, 51.5), (11.5, 48.1)])
+def test_the_layers_are_those_whose_areas_hold_the_place(atlas: Atlas, lon: float, lat: float) -> None:
+    """Whether they were looked up for its cell or for itself, and likewise the regions that are near."""
+    for east, north in np.random.default_rng(0).uniform(-0.3, 0.3, (60, 2)):
+        place, here = atlas.place(lon + east, lat + north), shapely.Point(lon + east, lat + north)
+        entries = atlas.country(place.country)
+        assert place.layers == tuple(each for each in entries if each.area is None or each.area.contains(here))
+        regions = [each for each in entries if each.kind == "region" and each not in place.layers]
+        near = {each.code for each in regions if each.area and is_near(each.area, here.x, here.y)}
+        assert {code for code in place.near_border_to if "-" in code} == near
 
 
 def test_at_sea_there_is_a_zone_but_no_country(atlas: Atlas) -> None:

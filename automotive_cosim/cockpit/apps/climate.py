@@ -52,10 +52,10 @@ class ClimateSchedule(AppData):
 
     def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
         """Starts the climate control ahead of the set time, at which the cabin is ready."""
-        if before is None or state.outside is None:
+        if not self.timer.on or before is None or state.outside is None:
             return
         starts = self.timer.moved(-PREPARING_MIN).minute
-        if self.timer.on and _minute(before.local_time) < starts <= _minute(state.outside.local_time):
+        if _minute(before.local_time) < starts <= _minute(state.outside.local_time):
             state.vehicle.command(HVAC.AUTO, True)
             state.notify(say("The cabin is being preconditioned for {time}", time=self.timer.shown), Icon.CLIMATE)
 

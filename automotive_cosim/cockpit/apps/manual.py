@@ -113,8 +113,9 @@ class ManualFilm(AppData):
 
     def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
         """The video ends at its end, or when the car leaves park."""
-        over = Restriction.NO_VIDEO in state.restrictions or state.time_s - self.since_s >= FILM_S
-        if self.topic is not None and over:
+        if self.topic is None:
+            return
+        if Restriction.NO_VIDEO in state.restrictions or state.time_s - self.since_s >= FILM_S:
             state.keep(ManualFilm())
 
 

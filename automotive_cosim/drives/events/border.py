@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import ClassVar
 
 from automotive_cosim.cockpit.signals import HMI
@@ -16,6 +18,9 @@ from automotive_cosim.geo.rules import Status
 
 TOPICS = ("dipped_beam", "daytime_lamps", "horn", "phone")
 """What a driver must know at once in another country."""
+
+
+_time_s, _country = attrgetter("time_s"), attrgetter("context.country")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +36,9 @@ class BorderCrossing:
 def crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
     """The border crossed within the last minute; None without one, or if a country is unknown."""
     here, now_s = drive[-1].context.country, drive[-1].time_s
+    first = max(bisect_left(drive, now_s - BORDER_S, key=_time_s) - 2, 0)
+    if len({*map(_country, drive[first:])}) == 1:  # as nearly always
+        return None
     for back, moment in enumerate(reversed(drive), start=1):
         if moment.context.country != here:
             known = bool(here and moment.context.country)
