@@ -104,7 +104,7 @@ def measured(task_id: str, half: str) -> Difficulty | None:
 
 @cache
 def _now() -> Mapping[str, str]:
-    """``fingerprint`` of each half of the shipped catalogue, kept, as to make them all takes a fifth of a second."""
+    """``fingerprint`` of each half of the shipped catalogue, kept: to make them all takes a fifth of a second."""
     files = (RECORD, *sorted(CATALOGUE.folder.rglob("*.toml"))) if CATALOGUE.folder else (RECORD,)
     return compiled(
         files,
