@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 from automotive_cosim.agents.base import Agent, Privileged
@@ -29,8 +29,7 @@ from automotive_cosim.tasking.moves import Move, Tap
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.tasking.ways import units_in
-from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.traffic.future import SharedFuture
+from automotive_cosim.traffic.base import Departures
 
 SEEING = Conditions(see=See.CAMERA)
 """No task lacks anything that is seen."""
@@ -111,8 +110,6 @@ class Ground:
     half_name: str
     seed: int
     episode: Episode
-    future: SharedFuture
-    """What all plays share until they ask the road for something."""
     _begun: list[int] = field(default_factory=list)
 
     @classmethod
@@ -121,7 +118,7 @@ class Ground:
         task: Task,
         half_name: str,
         seed: int,
-        simulations: Simulations,
+        simulations: Departures,
         scenario: str | None = None,
         *,
         coarse: bool = False,
@@ -130,7 +127,7 @@ class Ground:
 
         Args:
             seed: determines traffic, drive, phrasing and parameters.
-            simulations: warm traffic.
+            simulations: warm traffic; ``KnownDrives`` are driven once for all plays.
             scenario: used instead of the task's own.
             coarse: in steps of a second, which is quicker and other traffic.
 
@@ -143,8 +140,7 @@ class Ground:
         if coarse:
             finder.scenario = replace(finder.scenario, sumo=finder.scenario.sumo.stepping(1.0))
         hand_over = finder.find(SeedSource(seed).next())
-        episode = Episode.take_over(hand_over, SETUP)
-        return cls(task, half_name, seed, episode, episode.world.share_future())
+        return cls(task, half_name, seed, Episode.take_over(hand_over, SETUP))
 
     @property
     def instance(self) -> Instance:
@@ -209,7 +205,6 @@ class Ground:
 
     def close(self) -> None:
         self.episode.close()
-        self.future.close()
 
 
 @dataclass(slots=True)
@@ -289,7 +284,7 @@ def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> P
         episode.verdict,
         tuple(episode.moments),
         episode.baseline_moments,
-        lambda: episode.counterfactual,
+        cache(lambda: episode.counterfactual),
         episode.world.cockpit.given,
         tuple(episode.steps),
         stopping.stuck,
