@@ -63,13 +63,13 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.episode.episode import Episode, replayed
+from automotive_cosim.episode.episode import replayed
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, violations
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.first_sight import undeclared
-from automotive_cosim.proof.hand_over import Ground, Played, Script, finish
+from automotive_cosim.proof.hand_over import Ground, Played, Script, Trial, finish
 from automotive_cosim.proof.knowledge import DrawnValues, unknown
 from automotive_cosim.proof.place import mistagged
 from automotive_cosim.proof.world import implausible
@@ -181,6 +181,7 @@ def late(ground: Ground) -> Wrong:
     wait_s = ground.half.deadline.seconds
 
     class Late:
+        channels = oracle.channels
         left_s = wait_s
 
         def act(self, observation: Observation) -> Action:
@@ -572,7 +573,7 @@ def _bare(half: Half) -> Half:
     )
 
 
-def _observed(episode: Episode, actions: list[Action]) -> list[str]:
+def _observed(episode: Trial, actions: list[Action]) -> list[str]:
     branch = episode.branch()
     seen = [repr(branch.observation)]
     for action in actions:

@@ -37,6 +37,18 @@ SETUP = SessionSetup(ALL - {Channel.SCREENSHOT})
 """Every channel except the screenshot, which shows what the elements list."""
 
 
+@dataclass(kw_only=True)
+class Trial(Episode):
+    """An episode that a gate plays: what its actor does not look at is not shown."""
+
+    shows: frozenset[Channel] = SETUP.channels
+
+    def _channels(self, action: Action | None) -> frozenset[Channel]:
+        """Nobody looks at what follows a declaration."""
+        is_over = action is not None and action.action_type is ActionType.STATUS
+        return frozenset() if is_over else self.shows & self.setup.given
+
+
 @dataclass(frozen=True, slots=True)
 class Played:
     """A finished episode."""
@@ -94,6 +106,7 @@ class Script:
     """Plays given actions in order and repeats the last one."""
 
     actions: Sequence[Action]
+    channels: frozenset[Channel] = frozenset()
     _next: int = 0
 
     def act(self, observation: Observation) -> Action:
@@ -109,7 +122,7 @@ class Ground:
     task: Task
     half_name: str
     seed: int
-    episode: Episode
+    episode: Trial
     _begun: list[int] = field(default_factory=list)
 
     @classmethod
@@ -140,7 +153,7 @@ class Ground:
         if coarse:
             finder.scenario = replace(finder.scenario, sumo=finder.scenario.sumo.stepping(1.0))
         hand_over = finder.find(SeedSource(seed).next())
-        return cls(task, half_name, seed, Episode.take_over(hand_over, SETUP))
+        return cls(task, half_name, seed, Trial.take_over(hand_over, SETUP))
 
     @property
     def instance(self) -> Instance:
@@ -174,7 +187,7 @@ class Ground:
         setup = replace(SETUP, conditions=Conditions(make=make))
         oracle = Oracle()
         oracle.brief(instance)
-        return finish(Episode.take_over(there, setup), oracle)
+        return finish(Trial.take_over(there, setup), oracle)
 
     @property
     def move_of_action(self) -> tuple[int | None, ...]:
@@ -213,6 +226,10 @@ class _Noting:
 
     oracle: Oracle
     begun: list[int]
+
+    @property
+    def channels(self) -> frozenset[Channel]:
+        return self.oracle.channels
 
     def act(self, observation: Observation) -> Action:
         action = self.oracle.act(observation)
@@ -275,8 +292,9 @@ class _Stopping:
         return action
 
 
-def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> Played:
+def finish(episode: Trial, actor: Actor, *, stop_when_lost: bool = False) -> Played:
     """Plays an episode to its end, or with ``stop_when_lost`` until it is lost, and closes it."""
+    episode.shows = getattr(actor, "channels", SETUP.channels)
     stopping = _Stopping(episode, actor, stop_when_lost)
     play(episode, stopping)
     assert episode.verdict is not None

@@ -206,7 +206,7 @@ class Prover:
         self._last = ground.task.id, ground.seed, gates.hash_of_oracle(ground)
 
     def _trace(self, task_id: str, seed: int) -> str:
-        with closing(Ground.reach(CATALOGUE[task_id], "first", seed, self._simulations)) as ground:
+        with closing(Ground.reach(CATALOGUE[task_id], "first", seed, self._again)) as ground:
             return gates.hash_of_oracle(ground)
 
 
