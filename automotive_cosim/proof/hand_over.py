@@ -39,14 +39,12 @@ SETUP = SessionSetup(ALL - {Channel.SCREENSHOT})
 
 @dataclass(kw_only=True)
 class Trial(Episode):
-    """An episode that a gate plays: what its actor does not look at is not shown."""
+    """An episode that a gate plays: its actor is shown what it looks at, and a screen when it looks."""
 
     shows: frozenset[Channel] = SETUP.channels
 
     def _channels(self, action: Action | None) -> frozenset[Channel]:
-        """Nobody looks at what follows a declaration."""
-        is_over = action is not None and action.action_type is ActionType.STATUS
-        return frozenset() if is_over else self.shows & self.setup.given
+        return self.shows & self.setup.given
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,7 +272,7 @@ def would_lose(episode: Episode, action: Action) -> bool:
 class _Stopping:
     """An actor that stops when it is stuck and, if requested, when the episode is lost."""
 
-    episode: Episode
+    episode: Trial
     actor: Actor
     stops_when_lost: bool
     stuck: str = ""
@@ -282,6 +280,8 @@ class _Stopping:
     def act(self, observation: Observation) -> Action:
         if self.stops_when_lost and is_lost(self.episode):
             raise OutOfBudgetError("the episode can no longer succeed")
+        if Channel.ELEMENTS in self.episode.setup.given:
+            observation = replace(observation, elements=self.episode.elements)
         try:
             action = self.actor.act(observation)
         except ActionError as error:
@@ -294,7 +294,8 @@ class _Stopping:
 
 def finish(episode: Trial, actor: Actor, *, stop_when_lost: bool = False) -> Played:
     """Plays an episode to its end, or with ``stop_when_lost`` until it is lost, and closes it."""
-    episode.shows = getattr(actor, "channels", SETUP.channels)
+    channels: frozenset[Channel] = getattr(actor, "channels", SETUP.channels)
+    episode.shows = channels - {Channel.ELEMENTS}
     stopping = _Stopping(episode, actor, stop_when_lost)
     play(episode, stopping)
     assert episode.verdict is not None
