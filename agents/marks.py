@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,12 +34,12 @@ class Mark:
     """Place of the number: beside the box, inside the picture, on no letter and no other number."""
 
 
-def listed(elements: tuple[Element, ...]) -> tuple[tuple[int, Element], ...]:
+def listed(elements: Sequence[Element]) -> tuple[tuple[int, Element], ...]:
     """The visible elements with their indices: those that a prompt lists and a picture marks."""
     return tuple((index, element) for index, element in enumerate(elements) if element.is_visible)
 
 
-def marks(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> tuple[Mark, ...]:
+def marks(screenshot: npt.NDArray[np.uint8], elements: Sequence[Element]) -> tuple[Mark, ...]:
     """The marks of a screenshot, (height, width, 3).
 
     A number stands at the first place around its box that is free. On a crowded screen it stands inside the box
@@ -61,7 +61,7 @@ def marks(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> t
     return tuple(found)
 
 
-def marked(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> npt.NDArray[np.uint8]:
+def marked(screenshot: npt.NDArray[np.uint8], elements: Sequence[Element]) -> npt.NDArray[np.uint8]:
     """A copy of the screenshot, (height, width, 3), with its marks; numbers are drawn above all frames."""
     picture = Image.fromarray(screenshot)
     draw = ImageDraw.Draw(picture)

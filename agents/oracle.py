@@ -108,7 +108,7 @@ class Oracle:
         return by_point(self._act(replace(observation, elements=drawn)), drawn)
 
     def _act(self, observation: Observation) -> Action:
-        elements = observation.elements or ()
+        elements = () if observation.elements is None else observation.elements
         while self._moves and _is_reached(self._moves[0], elements, observation.said):
             self._moves.popleft()
             self._pressed = 0

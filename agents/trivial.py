@@ -100,8 +100,9 @@ class Random:
 
     def _draw(self, name: str, observation: Observation) -> object:
         rng = self._rng
+        if name == "index":
+            return _one(rng, tuple(_touchable(observation)) or (0,))
         choices: dict[str, tuple[object, ...]] = {
-            "index": tuple(_touchable(observation)) or (0,),
             "app_name": tuple(apps()),
             "direction": tuple(Direction),
             "distance_px": (50, 100, 200, 400),
@@ -116,8 +117,7 @@ class Random:
             "text": ("weather", "rules", "2.35,48.86", "hello"),
             "destination": ("",),
         }
-        drawn = choices[name]
-        return drawn[int(rng.integers(len(drawn)))]
+        return _one(rng, choices[name])
 
 
 class PressEverything:
@@ -140,6 +140,10 @@ class PressEverything:
                 self._pressed.add(key)
                 return Action(ActionType.CLICK, index=index)
         return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+
+
+def _one(rng: np.random.Generator, choices: tuple[object, ...]) -> object:
+    return choices[int(rng.integers(len(choices)))]
 
 
 def _touchable(observation: Observation) -> list[int]:

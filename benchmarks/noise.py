@@ -30,11 +30,10 @@ from automotive_cosim.agents import AgentSettings, Oracle, make_agent
 from automotive_cosim.contracts import Action, Observation
 from automotive_cosim.contracts.given import Hearing, PromptLength
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import HandOver
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.formats.writing import write_whole
-from automotive_cosim.proof.hand_over import SETUP, Ground, finish
+from automotive_cosim.proof.hand_over import SETUP, Ground, Trial, finish
 from automotive_cosim.report.stats import bracketed, wilson
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.trial import run_trial
@@ -147,7 +146,7 @@ def controlled(agent: str, task: str, half: str, level: str, simulations: Simula
         ground.instance, ground.episode.world.branch(), ground.episode.drive, ground.episode.scenario, SEED
     )
     player = Listener(agent) if agent in ("careful", "eager") else make_agent(agent, "none", AgentSettings())
-    return finish(Episode.take_over(there, under), ground.agent(player)).success
+    return finish(Trial.take_over(there, under), ground.agent(player)).success
 
 
 _GROUNDS: dict[str, Ground | None] = {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -118,7 +119,7 @@ class Observation:
     """What the driver has said since the hand-over, in order: answers to questions, and remarks of his own."""
     on_watch: bool = False
     """Whether the goal is a drive's standing order, which holds until the drive is over."""
-    elements: tuple[Element, ...] | None = None
+    elements: Sequence[Element] | None = None
     screenshot: npt.NDArray[np.uint8] | None = None
     """(height, width, 3), RGB."""
     camera: npt.NDArray[np.uint8] | None = None

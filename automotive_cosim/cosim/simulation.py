@@ -29,7 +29,6 @@ from automotive_cosim.geo.signs import signs_of
 from automotive_cosim.geo.sun import sun_at
 from automotive_cosim.scenarios import LinkAt, Scenario, WeatherAt
 from automotive_cosim.traffic.base import Traffic
-from automotive_cosim.traffic.future import SharedFuture
 from automotive_cosim.traffic.shadow import SharedTraffic
 from automotive_cosim.view.paint import picture
 from automotive_cosim.view.scene import Outside, OwnCar, sight_of
@@ -148,13 +147,6 @@ class CoSimulation:
         It gets a simulation of its own only when a request is made to this road. Close it first.
         """
         return CoSimulation(self.traffic.shadow(), self.car.copy(), self.moment)
-
-    def share_future(self) -> SharedFuture:
-        """From here on, this drive and its copies share what comes if nobody asks the road for anything: it is
-        driven once, for who plays many times from one instant. Close what it returns after all of them."""
-        future = SharedFuture(self.traffic, self.traffic.step_s)
-        self.traffic = SharedTraffic(future.drive(), self.traffic.step_s)
-        return future
 
     def close(self) -> None:
         """Ends the drive; may be called again."""

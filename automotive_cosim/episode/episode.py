@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.occupants import Seat
@@ -57,7 +57,7 @@ class Episode(JudgedSession):
         channels: Callable[[], frozenset[Channel]],
         observer: Observer | None = None,
         spare_traffic: Sequence[int] = (),
-    ) -> Episode:
+    ) -> Self:
         """Drives to the hand-over, and begins there.
 
         Args:
@@ -88,7 +88,7 @@ class Episode(JudgedSession):
         raise missed
 
     @classmethod
-    def take_over(cls, hand_over: HandOver, setup: SessionSetup, observer: Observer | None = None) -> Episode:
+    def take_over(cls, hand_over: HandOver, setup: SessionSetup, observer: Observer | None = None) -> Self:
         """The episode that begins at a hand-over, and takes over its drive.
 
         Raises TrafficError: the traffic simulation failed."""
@@ -110,7 +110,7 @@ class Episode(JudgedSession):
         """As in a session, but no longer than the task's deadline, after which it is too late anyway."""
         return super().thinking(min(seconds, self.instance.half.deadline.seconds))
 
-    def branch(self, max_steps: int | None = None) -> Episode:
+    def branch(self, max_steps: int | None = None) -> Self:
         """An independent episode from this instant, which nobody watches: neither affects the other from here on.
 
         The baseline run is shared, so close branches before the episode that they come from.

@@ -9,7 +9,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property, partial
 from itertools import takewhile
 from math import inf
 from typing import Any, Protocol, Self, TypeAlias, TypeVar, overload
@@ -106,7 +106,8 @@ class Session:
     """What the driver has said unasked since the beginning."""
     hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
     """Hash of the steps so far, computed when asked for."""
-    _roads: Roads | None = field(default=None, repr=False)
+    _roads: Callable[[], Roads] = field(repr=False)
+    """What dead reckoning needs of the network, made when first asked for, once for all branches."""
 
     @classmethod
     def begin(
@@ -321,9 +322,8 @@ class Session:
         if Channel.CONTEXT not in given or not self.setup.conditions.geo.answers:
             return Feedback(FeedbackCode.REFUSED, "this car has no service to ask"), 0.0
         known = self.shown.moments([*self.drive, *self.moments])
-        if self._roads is None and self.network.projection is not None:
-            self._roads = Roads(self.network)
-        reply = sensor.ask(action.text or "", known, with_position=Channel.GPS in given, roads=self._roads)
+        roads = None if self.network.projection is None else self._roads()
+        reply = sensor.ask(action.text or "", known, with_position=Channel.GPS in given, roads=roads)
         return Feedback(FeedbackCode.OK if reply.ok else FeedbackCode.REFUSED, reply.text), reply.cost_s
 
     def _reply(self, question: str) -> str:
@@ -442,6 +442,7 @@ def beginning(
         "drive": tuple(drive),
         "observer": observer or Observer(),
         "shown": told,
+        "_roads": cache(partial(Roads, world.traffic.network)),
         "moments": [first],
         "elements": elements,
         "observation": observation,

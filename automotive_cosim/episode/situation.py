@@ -29,8 +29,7 @@ from automotive_cosim.tasking.instance import Instance, draw, speech
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.ways import units_in
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
-from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.base import Departures, EgoPlan, Simulation, Traffic
 from automotive_cosim.voice.table import check
 
 WAITS_S = (0.0, 41.0, 113.0, 197.0, 307.0, 431.0)
@@ -60,7 +59,7 @@ class SituationFinder:
     def __init__(
         self,
         spec: EpisodeSpec,
-        simulations: Simulations,
+        simulations: Departures,
         *,
         task: Task | None = None,
         observer: Observer | None = None,

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import io
 import wave
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import fields
 from functools import cache, lru_cache
@@ -293,7 +293,7 @@ def _elements_space() -> spaces.Dict:
 _TEXTS = {"text": ELEMENT_TEXT_BYTES, "description": ELEMENT_TEXT_BYTES, "resource_id": RESOURCE_ID_BYTES}
 
 
-def _encode_elements(elements: tuple[Element, ...]) -> dict[str, Any]:
+def _encode_elements(elements: Sequence[Element]) -> dict[str, Any]:
     count = min(len(elements), MAX_ELEMENTS)
     encoded: dict[str, Any] = {
         "count": count,

@@ -36,6 +36,7 @@ from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.future import KnownDrives
 
 Reals: TypeAlias = NDArray[np.float64]
 OutcomesByHalf: TypeAlias = Mapping[str, Outcomes]
@@ -277,10 +278,10 @@ def play(tasks: Sequence[str], suite: str, record: OutcomesByHalf, seed: int = 0
     names = [contestant(agent, make_agent(agent).model) for agent in BUILT_IN]
     halves = [(task_id, half) for task_id in choose(tasks, suite) for half in CATALOGUE[task_id].halves]
     halves = [each for each in halves if not _known(record, "/".join(each)).keys() >= set(names)]
-    with closing(Simulations(count_limit=WARM)) as simulations:
+    with closing(Simulations(count_limit=WARM)) as simulations, closing(KnownDrives(simulations)) as drives:
         for task_id, half in sorted(halves, key=_traffic):
             try:
-                ground = Ground.reach(CATALOGUE[task_id], half, seed, simulations)
+                ground = Ground.reach(CATALOGUE[task_id], half, seed, drives)
             except TriggerNotReachedError:
                 continue
             with closing(ground):

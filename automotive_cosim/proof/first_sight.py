@@ -7,7 +7,7 @@ halves to the last digit, or an agent could tell them apart by what has nothing 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from datetime import datetime
 from enum import StrEnum
@@ -210,7 +210,7 @@ def _readings(vehicle: VehicleState) -> Iterator[Fact]:
         yield name, (causes, getattr(vehicle, name))
 
 
-def _on_screen(elements: tuple[Element, ...], signals: Mapping[str, Any]) -> Iterator[Fact]:
+def _on_screen(elements: Sequence[Element], signals: Mapping[str, Any]) -> Iterator[Fact]:
     counts: dict[str, int] = {}
     for element in elements:
         name = key_of(element.resource_id)

@@ -10,7 +10,6 @@ from automotive_cosim.agents.trivial import AlwaysAlert
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus
 from automotive_cosim.contracts.given import Interface, See
-from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.session import Actor
 from automotive_cosim.interface.functions import action_of, call_of
 from automotive_cosim.proof.hand_over import Ground, Played, finish
@@ -18,7 +17,7 @@ from automotive_cosim.proof.hand_over import Ground, Played, finish
 
 def _play(ground: Ground, actor: Actor, *, stop_when_lost: bool = False) -> Played:
     """An episode from the hand-over of an agent that calls functions and sees nothing of the screen."""
-    episode: Episode = ground.episode.branch()
+    episode = ground.episode.branch()
     conditions = replace(episode.setup.conditions, interface=Interface.FUNCTIONS, see=See.NOTHING)
     episode.setup = replace(episode.setup, conditions=conditions)
     return finish(episode, actor, stop_when_lost=stop_when_lost)

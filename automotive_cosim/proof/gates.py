@@ -63,13 +63,13 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.given import CarMake
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.episode.episode import Episode, replayed
+from automotive_cosim.episode.episode import replayed
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, violations
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.first_sight import undeclared
-from automotive_cosim.proof.hand_over import Ground, Played, Script, finish
+from automotive_cosim.proof.hand_over import Ground, Played, Script, Trial, finish
 from automotive_cosim.proof.knowledge import DrawnValues, unknown
 from automotive_cosim.proof.place import mistagged
 from automotive_cosim.proof.world import implausible
@@ -81,7 +81,7 @@ from automotive_cosim.tasking.parameters import FromCockpit
 from automotive_cosim.tasking.task import Basis, Differs, Half, Task
 from automotive_cosim.tasking.triggers import All, Not, Situation, TriggerCondition
 from automotive_cosim.tasking.verdict import judge, may_part
-from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.base import Departures
 
 PACE = 0.7
 """Share of the deadline that a reference solution may take, so that agents have a chance."""
@@ -181,6 +181,7 @@ def late(ground: Ground) -> Wrong:
     wait_s = ground.half.deadline.seconds
 
     class Late:
+        channels = oracle.channels
         left_s = wait_s
 
         def act(self, observation: Observation) -> Action:
@@ -544,7 +545,7 @@ def place(grounds: dict[str, Ground]) -> Wrong:
 # --- further hand-overs -----------------------------------------------------------------------------------
 
 
-def leak(ground: Ground, simulations: Simulations) -> Wrong:
+def leak(ground: Ground, simulations: Departures) -> Wrong:
     """Compares with the same hand-over of a task without a goal."""
     task = ground.task
     bare = {name: _bare(task.half(name)) for name in task.halves}
@@ -572,7 +573,7 @@ def _bare(half: Half) -> Half:
     )
 
 
-def _observed(episode: Episode, actions: list[Action]) -> list[str]:
+def _observed(episode: Trial, actions: list[Action]) -> list[str]:
     branch = episode.branch()
     seen = [repr(branch.observation)]
     for action in actions:
@@ -582,7 +583,7 @@ def _observed(episode: Episode, actions: list[Action]) -> list[str]:
     return seen
 
 
-def road(ground: Ground, simulations: Simulations) -> Wrong:
+def road(ground: Ground, simulations: Departures) -> Wrong:
     """Parks the car, in traffic that moves in steps of a second: a parked car needs no finer one. A task that
     requires a stationary car is skipped."""
     half = ground.task.half(ground.half_name)
@@ -605,7 +606,7 @@ def _stands(condition: TriggerCondition) -> bool:
     return isinstance(condition, Situation) and condition.name in ("parked", "standing")
 
 
-def repeat(ground: Ground, simulations: Simulations) -> Wrong:
+def repeat(ground: Ground, simulations: Departures) -> Wrong:
     """Repeats the same seed."""
     again = Ground.reach(ground.task, ground.half_name, ground.seed, simulations)
     if (again.instance.goal, again.instance.parameters) != (ground.instance.goal, ground.instance.parameters):
@@ -620,7 +621,7 @@ def hash_of_oracle(ground: Ground) -> str:
     return ground.reference.trace_sha256
 
 
-def reach(task: Task, seed: int, simulations: Simulations) -> Wrong:
+def reach(task: Task, seed: int, simulations: Departures) -> Wrong:
     """Plays the task in every further scenario, in each half."""
     for scenario, half in product(task.scenarios, task.halves):
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 from automotive_cosim.agents.base import Agent, Privileged
@@ -29,13 +29,22 @@ from automotive_cosim.tasking.moves import Move, Tap
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.tasking.ways import units_in
-from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.traffic.future import SharedFuture
+from automotive_cosim.traffic.base import Departures
 
 SEEING = Conditions(see=See.CAMERA)
 """No task lacks anything that is seen."""
 SETUP = SessionSetup(ALL - {Channel.SCREENSHOT})
 """Every channel except the screenshot, which shows what the elements list."""
+
+
+@dataclass(kw_only=True)
+class Trial(Episode):
+    """An episode that a gate plays: its actor is shown what it looks at, and a screen when it looks."""
+
+    shows: frozenset[Channel] = SETUP.channels
+
+    def _channels(self, action: Action | None) -> frozenset[Channel]:
+        return self.shows & self.setup.given
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +104,7 @@ class Script:
     """Plays given actions in order and repeats the last one."""
 
     actions: Sequence[Action]
+    channels: frozenset[Channel] = frozenset()
     _next: int = 0
 
     def act(self, observation: Observation) -> Action:
@@ -110,9 +120,7 @@ class Ground:
     task: Task
     half_name: str
     seed: int
-    episode: Episode
-    future: SharedFuture
-    """What all plays share until they ask the road for something."""
+    episode: Trial
     _begun: list[int] = field(default_factory=list)
 
     @classmethod
@@ -121,7 +129,7 @@ class Ground:
         task: Task,
         half_name: str,
         seed: int,
-        simulations: Simulations,
+        simulations: Departures,
         scenario: str | None = None,
         *,
         coarse: bool = False,
@@ -130,7 +138,7 @@ class Ground:
 
         Args:
             seed: determines traffic, drive, phrasing and parameters.
-            simulations: warm traffic.
+            simulations: warm traffic; ``KnownDrives`` are driven once for all plays.
             scenario: used instead of the task's own.
             coarse: in steps of a second, which is quicker and other traffic.
 
@@ -143,8 +151,7 @@ class Ground:
         if coarse:
             finder.scenario = replace(finder.scenario, sumo=finder.scenario.sumo.stepping(1.0))
         hand_over = finder.find(SeedSource(seed).next())
-        episode = Episode.take_over(hand_over, SETUP)
-        return cls(task, half_name, seed, episode, episode.world.share_future())
+        return cls(task, half_name, seed, Trial.take_over(hand_over, SETUP))
 
     @property
     def instance(self) -> Instance:
@@ -178,7 +185,7 @@ class Ground:
         setup = replace(SETUP, conditions=Conditions(make=make))
         oracle = Oracle()
         oracle.brief(instance)
-        return finish(Episode.take_over(there, setup), oracle)
+        return finish(Trial.take_over(there, setup), oracle)
 
     @property
     def move_of_action(self) -> tuple[int | None, ...]:
@@ -209,7 +216,6 @@ class Ground:
 
     def close(self) -> None:
         self.episode.close()
-        self.future.close()
 
 
 @dataclass(slots=True)
@@ -218,6 +224,10 @@ class _Noting:
 
     oracle: Oracle
     begun: list[int]
+
+    @property
+    def channels(self) -> frozenset[Channel]:
+        return self.oracle.channels
 
     def act(self, observation: Observation) -> Action:
         action = self.oracle.act(observation)
@@ -262,7 +272,7 @@ def would_lose(episode: Episode, action: Action) -> bool:
 class _Stopping:
     """An actor that stops when it is stuck and, if requested, when the episode is lost."""
 
-    episode: Episode
+    episode: Trial
     actor: Actor
     stops_when_lost: bool
     stuck: str = ""
@@ -270,6 +280,8 @@ class _Stopping:
     def act(self, observation: Observation) -> Action:
         if self.stops_when_lost and is_lost(self.episode):
             raise OutOfBudgetError("the episode can no longer succeed")
+        if Channel.ELEMENTS in self.episode.setup.given:
+            observation = replace(observation, elements=self.episode.elements)
         try:
             action = self.actor.act(observation)
         except ActionError as error:
@@ -280,8 +292,10 @@ class _Stopping:
         return action
 
 
-def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> Played:
+def finish(episode: Trial, actor: Actor, *, stop_when_lost: bool = False) -> Played:
     """Plays an episode to its end, or with ``stop_when_lost`` until it is lost, and closes it."""
+    channels: frozenset[Channel] = getattr(actor, "channels", SETUP.channels)
+    episode.shows = channels - {Channel.ELEMENTS}
     stopping = _Stopping(episode, actor, stop_when_lost)
     play(episode, stopping)
     assert episode.verdict is not None
@@ -289,7 +303,7 @@ def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> P
         episode.verdict,
         tuple(episode.moments),
         episode.baseline_moments,
-        lambda: episode.counterfactual,
+        cache(lambda: episode.counterfactual),
         episode.world.cockpit.given,
         tuple(episode.steps),
         stopping.stuck,

@@ -18,6 +18,7 @@ from automotive_cosim.proof.house_rules import policy
 from automotive_cosim.run.row import JobRow, Volatile
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.future import KnownDrives
 
 GATES = (
     "oracle",
@@ -105,6 +106,9 @@ class Prover:
         self._chosen = frozenset(chosen)
         self._simulations = simulations or Simulations(count_limit=SIMULATIONS)
         self._owns_simulations = simulations is None
+        self._known = KnownDrives(self._simulations)
+        self._again = KnownDrives(self._simulations)
+        """Whatever is known, driven a second time, to see whether it is the same."""
         self._last: tuple[str, int, str] | None = None
         """Task, seed and trace hash of the last reference solution."""
 
@@ -122,7 +126,7 @@ class Prover:
         try:
             before = self._trace_before(after, seed) if after and "residue" in self._chosen else ""
             for half in CATALOGUE[task_id].halves:
-                grounds[half] = Ground.reach(CATALOGUE[task_id], half, seed, self._simulations)
+                grounds[half] = Ground.reach(CATALOGUE[task_id], half, seed, self._known)
             for half, ground in grounds.items():
                 self._prove_half(found, half, ground)
             for gate in ("trivial", "law", "sight", "lasting", "place"):
@@ -133,13 +137,14 @@ class Prover:
             if "functions" in self._chosen:
                 found.take("functions", functions_are_not_enough(grounds))
             if "reach" in self._chosen:
-                found.take("reach", gates.reach(CATALOGUE[task_id], seed, self._simulations))
+                found.take("reach", gates.reach(CATALOGUE[task_id], seed, self._known))
             if "residue" in self._chosen:
                 found.take("residue", self._residue(after, before, grounds["first"]))
         except TriggerNotReachedError as error:
             found.take("reach", iter([str(error)]))
         except Exception as error:  # a fault in one task must not end the proof of the others
             broken = error
+            self._forget()
         finally:
             for ground in grounds.values():
                 ground.close()
@@ -156,6 +161,7 @@ class Prover:
         )
 
     def close(self) -> None:
+        self._forget()
         if self._owns_simulations:
             self._simulations.close()
 
@@ -173,9 +179,14 @@ class Prover:
             found.take("policy", policy(ground), half)
         if "functions" in self._chosen and right.success:
             found.take("functions", functions_win(ground), half)
-        for gate in ("leak", "road", "repeat"):
+        for gate, drives in (("leak", self._known), ("road", self._known), ("repeat", self._again)):
             if gate in self._chosen:
-                found.take(gate, getattr(gates, gate)(ground, self._simulations), half)
+                found.take(gate, getattr(gates, gate)(ground, drives), half)
+
+    def _forget(self) -> None:
+        """Forgets all drives, one of which may be broken."""
+        self._known.close()
+        self._again.close()
 
     def _trace_before(self, task_id: str, seed: int) -> str:
         """The trace hash of a task's reference solution; empty if it cannot be played."""
@@ -195,7 +206,7 @@ class Prover:
         self._last = ground.task.id, ground.seed, gates.hash_of_oracle(ground)
 
     def _trace(self, task_id: str, seed: int) -> str:
-        with closing(Ground.reach(CATALOGUE[task_id], "first", seed, self._simulations)) as ground:
+        with closing(Ground.reach(CATALOGUE[task_id], "first", seed, self._again)) as ground:
             return gates.hash_of_oracle(ground)
 
 

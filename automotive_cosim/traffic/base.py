@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Protocol
@@ -25,7 +26,7 @@ from automotive_cosim.contracts import (
     RouteOption,
 )
 from automotive_cosim.formats.incidents import AnyIncident
-from automotive_cosim.formats.scenario import Trip, WeatherAt
+from automotive_cosim.formats.scenario import Scenario, Trip, WeatherAt
 
 WarmUpProgress = Callable[[float, float], None]
 """Called with the simulated seconds of the warm-up that are done, and their total."""
@@ -211,4 +212,14 @@ class Simulation(Protocol):
 
     def close(self) -> None:
         """Ends the simulation's process, if it has one; may be called again."""
+        ...
+
+
+class Departures(Protocol):
+    """Simulations by their scenario and seed, from which drives depart."""
+
+    def held(
+        self, scenario: Scenario, seed: int, progress: WarmUpProgress | None = None
+    ) -> AbstractContextManager[Simulation]:
+        """The warm simulation of a scenario, made now if there is none, and kept at least while it is held."""
         ...

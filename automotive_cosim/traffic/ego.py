@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -227,7 +227,7 @@ class Driver:
     def __post_init__(self) -> None:
         self._mood = self.plan.driver
         self._profile = self.own or profile(self._mood)
-        self._draws = np.random.default_rng([self.plan.seed, 0])
+        self.react_anew(self.plan.seed)
         self._headway_s = self._profile.headway_s
         self._choose_speed()
         self._choose_braking()
@@ -237,6 +237,11 @@ class Driver:
         """All that decides how the driver goes on, beside the road and the plan."""
         mind = (getattr(self, each.name) for each in fields(self) if each.name not in ("plan", "pedals", "_draws"))
         return *mind, self._draws.bit_generator.state
+
+    def react_anew(self, seed: int) -> None:
+        """Reacts by a seed, as if the plan had it; until something is asked for, it makes no difference."""
+        self.plan = replace(self.plan, seed=seed)
+        self._draws = np.random.default_rng([seed, 0])
 
     def request(self, request: RoadRequest, state: DrivingState) -> Answer:
         """Receives a request. What does not depend on the driver happens now, the rest after the reaction time."""

@@ -93,6 +93,10 @@ class EgoLoop:
         """What the driver has in mind, and draws next (``Driver.state``)."""
         return self._driver.state
 
+    def react_anew(self, seed: int) -> None:
+        """See ``Driver.react_anew``."""
+        self._driver.react_anew(seed)
+
     def proceed(self, now: Instant, events: tuple[Event, ...]) -> tuple[Event, ...]:
         """Takes the instant after a step and its events, and gives the driver his turn; all that happened."""
         self._now = now

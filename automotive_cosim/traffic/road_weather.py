@@ -121,6 +121,16 @@ def sight_speed_mps(visibility_m: float, friction: float) -> float:
     return braking_mps2 * (-REACTION_S + math.sqrt(REACTION_S**2 + 2 * visibility_m / braking_mps2))
 
 
+def felt(timeline: tuple[WeatherAt, ...]) -> tuple[tuple[float, RoadCondition], ...]:
+    """What a timeline is on the road: two that are the same drive alike. Sight that limits nobody is as good as
+    any."""
+    found = ((entry.at_s, condition_of(entry.weather)) for entry in timeline)
+    return tuple(
+        (at_s, replace(condition, sight_mps=math.inf) if condition.sight_mps >= FASTEST_MPS else condition)
+        for at_s, condition in found
+    )
+
+
 class Forecast:
     """A timeline of weather as conditions of the road."""
 

@@ -91,6 +91,12 @@ def seen(running: Running, cars: Sequence[str]) -> RoadSnapshot:
     )
 
 
+def react_anew(running: Running, seed: int) -> None:
+    """The ego's driver, who was asked for nothing so far, will react by another seed than the plan's."""
+    assert running.drive is not None
+    running.drive.react_anew(seed)
+
+
 def fingerprint(running: Running) -> str:
     """Of all that decides how the traffic goes on, as far as SUMO tells: two drives that have been the same so far,
     and have the same one, stay the same as long as nobody asks for anything else."""

@@ -52,6 +52,7 @@ from automotive_cosim.tasking.triggers import (
     standing,
 )
 from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.traffic.future import KnownDrives
 from tests.laws import over
 from tests.written import COMFORT, ON_THE_WAY, asked
 
@@ -103,15 +104,16 @@ class AnyRequest:
 
 @pytest.fixture
 def ground(simulations):
-    grounds = []
+    grounds, drives = [], KnownDrives(simulations)
 
     def reach(task: Task, half: str = "first") -> Ground:
-        grounds.append(Ground.reach(task, half, 0, simulations))
+        grounds.append(Ground.reach(task, half, 0, drives))
         return grounds[-1]
 
     yield reach
     for made in grounds:
         made.close()
+    drives.close()
 
 
 def changed(**fields: object) -> Task:

@@ -9,10 +9,11 @@ import pytest
 
 from automotive_cosim.contracts import Alert, AlertKind, Cruise, DrivingState, RoadRequest, SlowDown
 from automotive_cosim.errors import TrafficError
-from automotive_cosim.scenarios import Trip
+from automotive_cosim.geo.weather import typical_weather
+from automotive_cosim.scenarios import Trip, WeatherAt, open_scenario
 from automotive_cosim.traffic.base import EgoPlan, Event, Traffic
-from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.future import SharedFuture
+from automotive_cosim.traffic.fork import Forked, Simulations
+from automotive_cosim.traffic.future import KnownDrives, SharedFuture
 from automotive_cosim.traffic.shadow import SharedTraffic
 from tests.scripted.traffic import Scripted, Stretch
 
@@ -192,3 +193,31 @@ def test_a_future_is_driven_once(depart: Depart) -> None:
     assert driven(early, 5.0) != driven(future.drive(), 6.0)
     early.close()
     future.close()
+
+
+@pytest.mark.sumo
+def test_who_departs_alike_drives_as_if_alone(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With reactions by one's own seed, in weather that the road does not feel; wet is another drive."""
+    scenario, drives, departed = open_scenario("grid"), KnownDrives(simulations), list[EgoPlan]()
+    dry, mild, wet = (
+        (WeatherAt(0.0, typical_weather(code, celsius)),) for code, celsius in ((0, 5), (2, 15), (63, 9))
+    )
+    plans = [EgoPlan(scenario.trip("avenue"), seed=seed, weather=sky) for seed, sky in enumerate((dry, mild, wet))]
+    with simulations.held(scenario, 0) as simulation:
+        alone = [simulation.depart(plan) for plan in plans]
+    depart = Forked.depart
+    monkeypatch.setattr(Forked, "depart", lambda self, plan: departed.append(plan) or depart(self, plan))
+    with drives.held(scenario, 0) as known:
+        shared = [known.depart(plan) for plan in plans]
+    assert departed == [plans[0], plans[2]]
+    found = []
+    for one, other in zip(alone, shared, strict=True):
+        assert driven(one, 3.0, 9.0) == driven(other, 3.0, 9.0)
+        assert one.request(SlowDown(15.0)) == other.request(SlowDown(15.0))
+        after = driven(one, 12.0)
+        assert after == driven(other, 12.0)
+        found.append([event for event in after[1] if event.kind.startswith("driver_")])
+        one.close()
+        other.close()
+    assert found[0] != found[1], "their drivers react otherwise"
+    drives.close()
