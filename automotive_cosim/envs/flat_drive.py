@@ -386,7 +386,7 @@ class FlatDriveEnv(DrivesEnv[npt.NDArray[np.float32], np.int64]):
             families: ids of families, or one; ``automotive-cosim show drives`` lists them.
             scenario: where to drive instead of on the families' own roads.
             minutes: when a drive is over, if its script ends later.
-            lean: for training, faster by half: SUMO in steps of a second, and screens are not in
+            lean: for training, faster by a fifth: SUMO in steps of a second, and screens are not in
                 the trace. The traffic is not that of the same seed in steps of 0.1 s.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
