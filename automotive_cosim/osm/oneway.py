@@ -127,11 +127,13 @@ def doubts(tags: Mapping[str, str]) -> Iterator[str]:
         timed = tags.get(f"{key}:conditional") and any(at_hours(tags, end) for end in access.ENDS)
         if tags.get(f"{key}:conditional") and (not timed or any(access.at_hours(tags, end) for end in access.ENDS)):
             yield f"{key}:conditional={tags[f'{key}:conditional']}"
-    if not any(tags.get(key) for key in KEYS) and _signed(tags) is BOTH:
+    if _signed(tags) is BOTH:
+        # OSMnx writes oneway=no on all roads whose direction the map leaves to what they are.
+        is_said = any(tags.get(key) for key in KEYS)
         yield from (
-            f"{key}={value} without oneway, both directions"
+            f"{key}={value} {'with oneway=no' if is_said else 'without oneway'}, both directions"
             for (key, value), row in IMPLIED.items()
-            if row.told and tags.get(key) == value
+            if (row.one_way if is_said else row.told) and tags.get(key) == value
         )
 
 

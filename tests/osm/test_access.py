@@ -150,6 +150,8 @@ def test_which_way_cars_may_drive(tags: dict[str, str], may: tuple[bool, bool]) 
         ({"motor_vehicle": "private", "access:conditional": "yes @ (20:00-06:00)"}, []),
         ({"oneway": "reversible"}, ["oneway=reversible"]),
         ({"oneway": "alternating"}, ["oneway=alternating"]),
+        ({"junction": "roundabout", "oneway": "no"}, ["junction=roundabout with oneway=no, both directions"]),
+        ({"highway": "trunk_link", "oneway": "no"}, []),
         ({"oneway": "perhaps"}, ["oneway=perhaps"]),
         ({"oneway": "yes", "oneway:conditional": "no @ (22:00-06:00)"}, []),
         ({"oneway": "yes", "oneway:conditional": "no @ destination"}, ["oneway:conditional=no @ destination"]),
