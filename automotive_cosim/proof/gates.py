@@ -585,9 +585,9 @@ def _observed(episode: Trial, actions: list[Action]) -> list[str]:
 
 def road(ground: Ground, simulations: Departures) -> Wrong:
     """Parks the car, in traffic that moves in steps of a second: a parked car needs no finer one. A task that
-    requires a stationary car is skipped."""
+    requires a stationary car is skipped, and none that requires a moving one need be tried."""
     half = ground.task.half(ground.half_name)
-    if half.start.parked or _stands(half.trigger.condition):
+    if half.start.parked or _requires(half.trigger.condition, _stands) or _requires(half.trigger.condition, _moves):
         return
     parked = replace(half, start=replace(half.start, parked=True))
     changed = {"first": parked} if ground.half_name == "first" else {"second": parked}
@@ -599,11 +599,25 @@ def road(ground: Ground, simulations: Departures) -> Wrong:
     yield "its trigger is reached by a parked car"
 
 
-def _stands(condition: TriggerCondition) -> bool:
-    """Whether it holds only for a stationary car."""
+def _requires(condition: TriggerCondition, what: Callable[[Situation], bool]) -> bool:
     if isinstance(condition, All):
-        return any(map(_stands, condition.conditions))
-    return isinstance(condition, Situation) and condition.name in ("parked", "standing")
+        return any(_requires(part, what) for part in condition.conditions)
+    return isinstance(condition, Situation) and what(condition)
+
+
+def _stands(situation: Situation) -> bool:
+    """Whether it holds only for a stationary car."""
+    return situation.name in ("parked", "standing")
+
+
+def _moves(situation: Situation) -> bool:
+    """Whether it holds only for a car that is faster than 0 km/h."""
+    match situation:
+        case Situation("driving" | "headway_below"):
+            return True
+        case Situation("speed_above" | "speed_between" | "over_posted", (float() | int() as more_than, *_)):
+            return more_than >= 0
+    return False
 
 
 def repeat(ground: Ground, simulations: Departures) -> Wrong:

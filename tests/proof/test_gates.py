@@ -49,6 +49,7 @@ from automotive_cosim.tasking.triggers import (
     lit,
     parked,
     signal_above,
+    speed_between,
     standing,
 )
 from automotive_cosim.tasks import CATALOGUE
@@ -190,17 +191,21 @@ def test_a_goal_that_takes_another_request_is_seen(ground, goal, wrong):
 
 
 @pytest.mark.parametrize(
-    ("condition", "stands"),
+    ("condition", "stands", "moves"),
     [
-        (parked(), True),
-        (All((dark(), All((standing(), lit())))), True),
-        (Not(parked()), False),
-        (All((dark(), driving())), False),
+        (parked(), True, False),
+        (All((dark(), All((standing(), lit())))), True, False),
+        (Not(parked()), False, False),
+        (All((dark(), driving())), False, True),
+        (speed_between(0.0, 12.0), False, True),
+        (speed_between(-1.0, 12.0), False, False),
+        (Not(driving()), False, False),
     ],
     ids=str,
 )
-def test_a_trigger_that_asks_for_a_standing_car_is_known_by_its_structure(condition, stands):
-    assert gates._stands(condition) is stands
+def test_a_trigger_that_asks_for_a_standing_or_a_moving_car_is_known_by_its_structure(condition, stands, moves):
+    assert gates._requires(condition, gates._stands) is stands
+    assert gates._requires(condition, gates._moves) is moves
 
 
 def test_a_verdict_blind_to_side_effects_is_seen(ground, monkeypatch):
