@@ -347,7 +347,9 @@ class WebServer(ThreadingHTTPServer):
             super().__init__((host, port), _RequestHandler)
         except (OSError, OverflowError) as error:
             why = getattr(error, "strerror", None) or str(error)
-            raise UserError(f"cannot listen on {host} port {port}: {why}; give another --host or --port") from error
+            raise UserError(
+                f"cannot listen on {host} port {port}: {why}; give another address with --http"
+            ) from error
         self.names = own_names(host)
         self._held: dict[socket.socket, tuple[int, float]] = {}
         """Rank and time of each connection: 0 before it has shown a token."""
