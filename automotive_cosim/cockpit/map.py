@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from shapely import Geometry, LineString, Point, Polygon, STRtree, box
+from shapely import Polygon, STRtree, box, linestrings, points
 
 from automotive_cosim.cockpit.drawing import text_width
 from automotive_cosim.cockpit.geometry import Rect
@@ -71,10 +71,11 @@ class RoadMap:
         self.network = network
         self.roads = tuple(road for road in network.roads if len(road.shape_m) > 1)
         shapes = [np.asarray(road.shape_m, dtype=np.float64) for road in self.roads]
-        lines: list[Geometry] = [LineString(shape) for shape in shapes]
-        self._tree = STRtree(lines)
+        counts = [len(shape) for shape in shapes]
         self._points = np.concatenate(shapes) if shapes else np.empty((0, 2))
-        self._starts = np.cumsum([0, *(len(shape) for shape in shapes)])
+        self._starts = np.cumsum([0, *counts])
+        lines = linestrings(self._points, indices=np.repeat(np.arange(len(counts)), counts))
+        self._tree = STRtree(np.asarray(lines))
         self._rounded = _bends(self._points, self._starts)
         self._ranks = np.array([_rank(road) for road in self.roads], dtype=np.int64)
         lengths = np.array([road.length_m for road in self.roads])
@@ -82,7 +83,7 @@ class RoadMap:
         self._named = [self.roads[at].name for at in named]
         """Names of roads, as often as there are such: of major roads first, then of long ones."""
         self._middles = np.array([_middle(shapes[at]) for at in named]).reshape(-1, 2)
-        self._named_tree = STRtree([Point(*at) for at in self._middles])
+        self._named_tree = STRtree(np.asarray(points(self._middles)))
         in_tunnel = np.array([road.in_tunnel for road in self.roads], dtype=bool)
         self._depths = np.where(in_tunnel, -1, self._ranks)
         self._index = {road.edge_id: i for i, road in enumerate(self.roads)}

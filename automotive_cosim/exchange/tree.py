@@ -14,7 +14,7 @@ from typing import Any
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import bounds
-from automotive_cosim.formats.xml import Place, scan
+from automotive_cosim.formats.xml import FilePlace, scan
 
 PARAMETER = re.compile(r"\$([A-Za-z_]\w*)")
 _OPERATORS: Mapping[type[ast.AST], Any] = {
@@ -187,7 +187,7 @@ def read_tree(path: Path, kept: frozenset[str] | None = None) -> XmlElement:
     Raises ScenarioError: it is missing or no XML."""
     open_elements: list[XmlElement] = []
     roots: list[XmlElement] = []
-    place = Place()
+    place = FilePlace()
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         if kept is None or not open_elements or tag in kept:

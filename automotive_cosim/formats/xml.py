@@ -31,7 +31,7 @@ OnStart = Callable[[str, dict[str, str]], None]
 """Takes an element's name and its attributes. The parser itself calls it: a city has a million elements."""
 
 
-class Place:
+class FilePlace:
     """Where in a file its reader is."""
 
     parser: expat.XMLParserType
@@ -47,7 +47,7 @@ def scan(
     end: Callable[[str], None] | None = None,
     text: Callable[[str], None] | None = None,
     *,
-    place: Place | None = None,
+    place: FilePlace | None = None,
     error: type[UserError],
     what: str = "XML",
     copy: Path | None = None,

@@ -35,6 +35,9 @@ MOST_CELLS = 4096
 STEP_M = 400.0
 """Distance between the points of a search."""
 
+_zone_at = lru_cache(maxsize=256)(tzfpy.get_tz)
+"""The time zone of a position, which is asked for a dozen times a second."""
+
 NORTH_VIETNAM = shapely.box(102.0, 17.0, 110.0, 24.0) - shapely.box(102.0, 17.0, 104.95, 18.6)
 """Where the time zone of Bangkok, which the north of Vietnam shares, is not Thailand: it begins where Laos ends."""
 
@@ -186,7 +189,7 @@ class Atlas:
         """
         check_position(lon_deg, lat_deg)
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
-        zone = tzfpy.get_tz(lon_deg, lat_deg)
+        zone = _zone_at(lon_deg, lat_deg)
         country = country_at(zone, lon_deg, lat_deg)
         code = LAW_OF.get(country, country)
         layers = self._layers_of_cell(code, math.floor(lon_deg / SMALL_DEG), math.floor(lat_deg / SMALL_DEG))
@@ -213,7 +216,7 @@ class Atlas:
 
     def country_at(self, lon_deg: float, lat_deg: float) -> str:
         """ISO 3166-1 code of the country of a position; empty at sea. Much faster than its whole place."""
-        return country_at(tzfpy.get_tz(lon_deg, lat_deg), lon_deg, lat_deg)
+        return country_at(_zone_at(lon_deg, lat_deg), lon_deg, lat_deg)
 
     def country(self, code: str) -> tuple[Jurisdiction, ...]:
         """A country's law with those of its cities and regions, cities first and itself last; empty without any.

@@ -25,7 +25,7 @@ from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_utf8, open_file, opened
 from automotive_cosim.formats.limited import read_limited
 from automotive_cosim.formats.writing import drafted
-from automotive_cosim.formats.xml import Place, scan
+from automotive_cosim.formats.xml import FilePlace, scan
 from automotive_cosim.osm import land_cover
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.land_cover import MappedArea
@@ -415,7 +415,7 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
         the version of the format.
     """
     deleted: set[tuple[str, int]] = set()
-    version, within, place = "0.6", "", Place()
+    version, within, place = "0.6", "", FilePlace()
 
     def start(name: str, attributes: dict[str, str]) -> None:
         nonlocal version, within

@@ -20,7 +20,7 @@ from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_d
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.words import shown
-from automotive_cosim.formats.xml import Place, scan
+from automotive_cosim.formats.xml import FilePlace, scan
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.mirror import mirrored
 from automotive_cosim.traffic.network import Network, Shape, open_to, quantity, read_network
@@ -136,7 +136,7 @@ def read_ground(
     """
     found: list[GroundArea] = []
     reference = None if roads.projection is None else GeoReference(roads)
-    files, place = list(configuration.files.get("additional-files", ())), Place()
+    files, place = list(configuration.files.get("additional-files", ())), FilePlace()
     for file in files:  # which grows
 
         def start(element: str, attributes: dict[str, str], file: Path = file) -> None:

@@ -22,7 +22,7 @@ from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_file, opened
 from automotive_cosim.formats.writing import drafted
-from automotive_cosim.formats.xml import SHARED_ENCODINGS, Place, scan
+from automotive_cosim.formats.xml import SHARED_ENCODINGS, FilePlace, scan
 from automotive_cosim.traffic.georeference import in_full
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vocabulary import ELEMENTS, INPUTS, OUTPUTS, WRITING_LIGHT, parameter
@@ -215,7 +215,7 @@ class _Reader:
     """Names of the elements that have ended: to have them listed takes none of a million calls of Python's."""
     free: int = NO_DEPTH
     """How deep the element stands within which anything may be."""
-    place: Place = field(default_factory=Place)
+    place: FilePlace = field(default_factory=FilePlace)
 
     @property
     def where(self) -> str:

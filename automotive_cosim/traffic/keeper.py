@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import importlib.metadata
 import os
+import pickle
 import socket
 import stat
 import struct
@@ -32,6 +33,7 @@ from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError, SetupError, TrafficError, UserError
 from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.formats.writing import locked, make_folder, remove
+from automotive_cosim.formats.xml import without_collection
 from automotive_cosim.traffic.base import WarmUpProgress
 from automotive_cosim.traffic.channel import ClosedError, MessageChannel
 from automotive_cosim.traffic.options import Setup, read_configuration
@@ -63,7 +65,8 @@ class _Kept:
     setup: Setup | None = None
     """With which it was warmed up."""
     process: RemoteProcess | None = None
-    network: RoadNetwork | None = None
+    network: bytes = b""
+    """Pickled once for all."""
     used_s: float = field(default_factory=time.monotonic)
 
     def line(self) -> str:
@@ -134,7 +137,7 @@ class _Keeper:
         with self._lock:
             kept = self._kept.setdefault(wanted, _Kept())
             self._kept.move_to_end(wanted)
-        is_whole = False
+        is_new = is_whole = False
         try:
             with kept.lock:
                 kept.used_s = time.monotonic()
@@ -144,12 +147,13 @@ class _Keeper:
                         with suppress(ClosedError):  # who comes later gets it
                             channel.send(("progress", (done_s, total_s)))
 
-                    kept.setup = setup
-                    kept.process, kept.network = RemoteProcess.start(setup, progress, TIMEOUT_S)
+                    is_new, kept.setup = True, setup
+                    kept.process, network = RemoteProcess.start(setup, progress, TIMEOUT_S)
+                    kept.network = pickle.dumps(network, pickle.HIGHEST_PROTOCOL)
                 copy = kept.process.fork(None)
                 kept.used_s = self._used_s = time.monotonic()
                 found = kept.setup, kept.network, copy.pid
-            is_whole = _wanted(setup) == wanted  # or somebody has changed its files meanwhile
+            is_whole = not is_new or _wanted(setup) == wanted  # or somebody has changed its files meanwhile
         finally:
             with self._lock:
                 if not is_whole:
@@ -229,12 +233,13 @@ def _copied(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> 
         if outcome == "error":
             kind, text = value
             raise kind.__new__(kind, text)  # the text is whole already
-        theirs, network, pid = value
+        theirs, pickled, pid = value
         process = RemoteProcess.taken(channel, pid, timeout_s)
     process.call("find", sys.path)
     if theirs != setup:
-        network = process.call("move", setup.scenario)
-    return process, network
+        return process, process.call("move", setup.scenario)
+    with without_collection():
+        return process, pickle.loads(pickled)
 
 
 def _wanted(setup: Setup) -> _Wanted:

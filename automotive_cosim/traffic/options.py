@@ -20,7 +20,7 @@ from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, Trip
 from automotive_cosim.formats.writing import write_whole
-from automotive_cosim.formats.xml import Place, read_root, scan
+from automotive_cosim.formats.xml import FilePlace, read_root, scan
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.file_check import OTHER_EGO, copy_vetted, refuse_variables
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
@@ -234,7 +234,7 @@ class _Reader:
     """Takes the options of a configuration."""
 
     path: Path
-    place: Place = field(default_factory=Place)
+    place: FilePlace = field(default_factory=FilePlace)
     options: dict[str, str] = field(default_factory=dict)
     files: dict[str, tuple[Path, ...]] = field(default_factory=dict)
     ignored: dict[str, None] = field(default_factory=dict)
