@@ -29,7 +29,7 @@ from automotive_cosim.tasking.instance import Instance, draw, speech
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.ways import units_in
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.traffic.base import Departures, EgoPlan, Simulation, Traffic
+from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic, WarmSimulations
 from automotive_cosim.voice.table import check
 
 WAITS_S = (0.0, 41.0, 113.0, 197.0, 307.0, 431.0)
@@ -59,7 +59,7 @@ class SituationFinder:
     def __init__(
         self,
         spec: EpisodeSpec,
-        simulations: Departures,
+        simulations: WarmSimulations,
         *,
         task: Task | None = None,
         observer: Observer | None = None,

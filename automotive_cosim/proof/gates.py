@@ -81,7 +81,7 @@ from automotive_cosim.tasking.parameters import FromCockpit
 from automotive_cosim.tasking.task import Basis, Differs, Half, Task
 from automotive_cosim.tasking.triggers import All, Not, Situation, TriggerCondition
 from automotive_cosim.tasking.verdict import judge, may_part
-from automotive_cosim.traffic.base import Departures
+from automotive_cosim.traffic.base import WarmSimulations
 
 PACE = 0.7
 """Share of the deadline that a reference solution may take, so that agents have a chance."""
@@ -545,7 +545,7 @@ def place(grounds: dict[str, Ground]) -> Wrong:
 # --- further hand-overs -----------------------------------------------------------------------------------
 
 
-def leak(ground: Ground, simulations: Departures) -> Wrong:
+def leak(ground: Ground, simulations: WarmSimulations) -> Wrong:
     """Compares with the same hand-over of a task without a goal."""
     task = ground.task
     bare = {name: _bare(task.half(name)) for name in task.halves}
@@ -583,7 +583,7 @@ def _observed(episode: Trial, actions: list[Action]) -> list[str]:
     return seen
 
 
-def road(ground: Ground, simulations: Departures) -> Wrong:
+def road(ground: Ground, simulations: WarmSimulations) -> Wrong:
     """Parks the car, in traffic that moves in steps of a second: a parked car needs no finer one. A task that
     requires a stationary car is skipped, and none that requires a moving one need be tried."""
     half = ground.task.half(ground.half_name)
@@ -620,7 +620,7 @@ def _moves(situation: Situation) -> bool:
     return False
 
 
-def repeat(ground: Ground, simulations: Departures) -> Wrong:
+def repeat(ground: Ground, simulations: WarmSimulations) -> Wrong:
     """Repeats the same seed."""
     again = Ground.reach(ground.task, ground.half_name, ground.seed, simulations)
     if (again.instance.goal, again.instance.parameters) != (ground.instance.goal, ground.instance.parameters):
@@ -635,7 +635,7 @@ def hash_of_oracle(ground: Ground) -> str:
     return ground.reference.trace_sha256
 
 
-def reach(task: Task, seed: int, simulations: Departures) -> Wrong:
+def reach(task: Task, seed: int, simulations: WarmSimulations) -> Wrong:
     """Plays the task in every further scenario, in each half."""
     for scenario, half in product(task.scenarios, task.halves):
         try:

@@ -29,7 +29,7 @@ from automotive_cosim.tasking.moves import Move, Tap
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.tasking.ways import units_in
-from automotive_cosim.traffic.base import Departures
+from automotive_cosim.traffic.base import WarmSimulations
 
 SEEING = Conditions(see=See.CAMERA)
 """No task lacks anything that is seen."""
@@ -129,7 +129,7 @@ class Ground:
         task: Task,
         half_name: str,
         seed: int,
-        simulations: Departures,
+        simulations: WarmSimulations,
         scenario: str | None = None,
         *,
         coarse: bool = False,

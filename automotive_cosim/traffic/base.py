@@ -215,7 +215,7 @@ class Simulation(Protocol):
         ...
 
 
-class Departures(Protocol):
+class WarmSimulations(Protocol):
     """Simulations by their scenario and seed, from which drives depart."""
 
     def held(

@@ -40,7 +40,7 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THRE
 LARGE_PAGES = {"GLIBC_TUNABLES": "glibc.malloc.hugetlb=1:glibc.malloc.trim_threshold=1073741824"}
 """Memory in pages of 2 MB where Linux has them: a fork copies the table of pages, not the pages, so it takes half
 as long, and what a copy then writes to is still copied in pages of 4 kB. What SUMO frees while it loads is kept for
-what it needs next: given back and taken again, such pages are cleared each time, a fifth of a city's loading."""
+what it needs next: given back and taken again, such pages are cleared each time."""
 
 
 class _Complaints:
