@@ -155,7 +155,7 @@ def answer(study: AdoptionStudy) -> str:
         text += f"; in {percent(half)}, {_sooner(then.value)}: {part:.0%} of the gain is gone"
     everybody = mean(study, shares[-1], ALL)
     if everybody is not None:
-        text += f". In {percent(shares[-1])}, all cars together arrive {_sooner(everybody.value)} per car"
+        text += f". At {percent(shares[-1])}, all cars together arrive {_sooner(everybody.value)} per car"
     return f"{text}; over {counted(least.seeds, 'seed')}."
 
 
