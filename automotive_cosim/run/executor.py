@@ -85,7 +85,8 @@ Opener = Callable[[], AbstractContextManager[Runner[J, R]]]
 """Makes a worker's runner; it is sent to the worker, so it must be a module's function or a partial of one."""
 
 
-FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS})
+NOT_WRITABLE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS})
+"""Errors of a disk that takes no more, which no other try mends."""
 
 
 def failed(job: Job, kind: str, why: str) -> Any:
@@ -96,8 +97,8 @@ def failed(job: Job, kind: str, why: str) -> Any:
 def failed_by(job: Job, error: Exception) -> Any:
     """The same by an error, of which a fault in this package or in an agent is told by its class too.
 
-    Raises OSError: the disk is full. All others would end so, some of them after they have asked a model."""
-    if isinstance(error, OSError) and error.errno in FULL:
+    Raises OSError: the disk takes no more. All others would end so, some of them after they have asked a model."""
+    if isinstance(error, OSError) and error.errno in NOT_WRITABLE:
         raise error
     name = type(error).__name__
     return failed(job, name, str(error) if isinstance(error, CosimError) else f"{name}: {error}")

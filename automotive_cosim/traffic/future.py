@@ -227,7 +227,7 @@ class KnownDrives:
         alike = scenario, seed, replace(plan, seed=0, weather=()), weather
         future = self._futures.get(alike)
         if future is None:
-            for old in [other for other, each in self._futures.items() if not each.drives][: -KEPT or None]:
+            for old in [other for other, each in self._futures.items() if not each.drives][:-KEPT]:
                 self._futures.pop(old).close()
             step_s = scenario.sumo.step_length_s
             future = self._futures[alike] = SharedFuture(simulation.depart(plan), step_s, _reseed)
