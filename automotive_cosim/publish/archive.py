@@ -1,4 +1,6 @@
-"""A bundle as an archive: a zip without compression, with the same bytes for the same files.
+"""A bundle as an archive: a zip of unpacked files, the same bytes for the same files, which xz packs as a whole.
+
+Episodes repeat one another's screens and prompts, so that together they take a fifth of what they take one by one.
 
 bundle.json                      what is in it (``contents``)
 manifest.json                    the plan; versions, platform and state of the code at each start
@@ -9,6 +11,7 @@ traces/ID.judged.json.xz         the input of its verdict
 
 from __future__ import annotations
 
+import lzma
 import re
 import shutil
 import tempfile
@@ -19,7 +22,7 @@ from pathlib import Path
 from typing import IO
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import open_file
+from automotive_cosim.formats.files import opened
 from automotive_cosim.formats.writing import drafted, make_folder
 from automotive_cosim.publish.contents import NAME
 
@@ -41,6 +44,14 @@ def members(folder: Path) -> list[str]:
 
 def pack(folder: Path, file: IO[bytes]) -> None:
     """Packs the files of a folder. Raises OSError: the archive cannot be written."""
+    with tempfile.TemporaryFile() as whole, lzma.open(file, "wb") as packed:
+        lay_out(folder, whole)
+        whole.seek(0)
+        shutil.copyfileobj(whole, packed)
+
+
+def lay_out(folder: Path, file: IO[bytes]) -> None:
+    """Writes the archive that is packed. Raises OSError: it cannot be written."""
     with zipfile.ZipFile(file, "w") as archive:
         for name in members(folder):
             entry = zipfile.ZipInfo(name, _LONG_AGO)
@@ -64,8 +75,11 @@ def unpack(bundle: Path, folder: Path) -> None:
     Raises UserError: it is not a bundle, or contains a file that does not belong there."""
     make_folder(folder, "traces")
     try:
-        with open_file(bundle) as file, zipfile.ZipFile(file) as archive:
-            _unpack(bundle, archive, folder)
+        with opened(bundle) as source, tempfile.TemporaryFile() as file:
+            shutil.copyfileobj(source, file)
+            size = file.tell()
+            with zipfile.ZipFile(file) as archive:
+                _unpack(bundle, archive, size, folder)
     except (zipfile.BadZipFile, NotImplementedError, OSError, EOFError, ValueError, RuntimeError) as error:
         fault = getattr(error, "strerror", None) or error  # without the number, and the path a second time
         raise UserError(
@@ -73,8 +87,8 @@ def unpack(bundle: Path, folder: Path) -> None:
         ) from error
 
 
-def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
-    left = min(MOST_BYTES, bundle.stat().st_size)  # nothing is compressed, so together they are smaller than that
+def _unpack(bundle: Path, archive: zipfile.ZipFile, size: int, folder: Path) -> None:
+    left = min(MOST_BYTES, size)  # nothing is compressed, so together they are smaller than that
     for entry in archive.infolist():
         path = folder / entry.filename
         left -= entry.file_size
@@ -84,8 +98,8 @@ def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
             )
         if entry.compress_type != zipfile.ZIP_STORED or left < 0:
             raise UserError(
-                f"{bundle} is compressed, larger than {MOST_BYTES >> 30} GB or holds more than its size; a bundle "
-                "does not"
+                f"{bundle} has a compressed file, is over {MOST_BYTES >> 30} GB or holds more than its size; "
+                "a bundle does not"
             )
         with archive.open(entry) as source, drafted(path) as target:
             shutil.copyfileobj(source, target)

@@ -63,7 +63,7 @@ def write_bundle(folder: Path, out: Path) -> Contents:
             write_whole(staged / "manifest.json", json.dumps(manifest, indent=1).encode())
             lines = "".join(json.dumps(as_json(row), ensure_ascii=False) + "\n" for row in kept)
             write_whole(staged / "episodes.jsonl", lines.encode())
-            _refuse_secrets(staged, os.environ)
+            _unpack(staged, os.environ)
             contents = Contents(
                 FORMAT,
                 ran_with(manifest),
@@ -134,16 +134,19 @@ def _without_homes(value: Any) -> Any:
     return value
 
 
-def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
-    """
+def _unpack(staged: Path, environment: Mapping[str, str]) -> None:
+    """Unpacks the files, since they are packed together.
+
     Raises UserError: a file contains a key of the environment or the path of a home folder, or cannot be
     unpacked."""
     secrets = {value: name for name, value in environment.items() if re.search(SECRET, name, re.IGNORECASE)}
     for name in archive.members(staged):
         try:
-            text = read_unpacked(staged / name).decode(errors="replace")
+            data = read_unpacked(staged / name)
         except (OSError, ValueError) as error:
             raise UserError(f"{name} cannot be read: {error}; rerun its episode, or leave it out") from error
+        write_whole(staged / name, data)
+        text = data.decode(errors="replace")
         told = letters(text)
         for secret, variable in secrets.items():
             if any(spelled(told, secret)):

@@ -6,7 +6,6 @@ stored moments, verdicts with new ones from these moments, and a sample of the d
 
 from __future__ import annotations
 
-import filecmp
 import json
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,7 +14,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from importlib.metadata import version
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -25,9 +24,9 @@ from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import CosimError, NoRoomError, UserError
-from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.files import file_sha256, opened
 from automotive_cosim.formats.limited import LimitedProcesses
-from automotive_cosim.formats.writing import drafted
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, Contents, counts, read_contents
 from automotive_cosim.publish.episodes import check_trial
@@ -190,11 +189,11 @@ def hash_problems(folder: Path, contents: Contents) -> list[Problem]:
 
 
 def _archive_problems(folder: Path, bundle: Path) -> Iterator[Problem]:
-    with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
-        again = Path(name) / bundle.name
-        with drafted(again) as file:
-            archive.pack(folder, file)
-        if not filecmp.cmp(again, bundle, shallow=False):
+    with tempfile.TemporaryFile() as again, opened(bundle) as file:
+        archive.lay_out(folder, again)
+        again.seek(0)
+        pieces = (iter(partial(each.read, bounds.CHUNK_BYTES), b"") for each in (again, file))
+        if any(one != other for one, other in zip_longest(*pieces)):
             yield Problem(
                 bundle.name, "", "is not, to the byte, the archive that `publish bundle` makes of its files"
             )

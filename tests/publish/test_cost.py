@@ -13,7 +13,14 @@ import pytest
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds, limited
-from automotive_cosim.formats.files import file_sha256, open_file, parse_json, read_json, read_json_lines
+from automotive_cosim.formats.files import (
+    file_sha256,
+    open_file,
+    parse_json,
+    read_json,
+    read_json_lines,
+    read_unpacked,
+)
 from automotive_cosim.formats.limited import LimitedProcesses
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.bundle import write_bundle
@@ -137,7 +144,7 @@ def test_references_that_grow_twofold_a_line_cost_a_bounded_time(unpacked, tmp_p
     """Each entry of the pool holds the one before twice: small to keep, and endless to look through."""
     monkeypatch.setattr(limited, "BUNDLE", replace(bounds.BUNDLE, free_s=1))
     path = judged_file(unpacked, judged(unpacked).id)
-    whole = json.loads(lzma.decompress(path.read_bytes()))
+    whole = read_json(path)
     at = len(whole["pool"])
     whole["pool"] += [["t", 0], *(["t", ["#", at + n], ["#", at + n]] for n in range(60))]
     whole["pool"] += [["f", ["#", at + 60]]]  # to be hashed
@@ -150,7 +157,7 @@ def test_references_that_grow_twofold_a_line_cost_a_bounded_time(unpacked, tmp_p
 
 def test_an_archive_that_holds_more_than_its_size_is_refused(packed, tmp_path):
     path = tmp_path / "b.bundle"
-    path.write_bytes(packed.read_bytes())
+    path.write_bytes(read_unpacked(packed))
     with zipfile.ZipFile(path, "a") as zipped:
         whole = zipped.getinfo("manifest.json")
         first = zipped.getinfo(next(name for name in zipped.namelist() if name.endswith(".gz")))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import gzip
 import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from automotive_cosim.formats.files import read_unpacked
 from automotive_cosim.formats.plain import plain
 
 from .test_cost import renewed
@@ -44,11 +44,10 @@ def hostile(value: Any, names: frozenset[str], name: str = "") -> Any:
 
 def rewritten(path: Path, names: frozenset[str]) -> None:
     """Every text of these fields in a file of JSON is hostile."""
-    packed = path.suffix == ".gz"
-    text = gzip.decompress(path.read_bytes()).decode() if packed else path.read_text("utf-8")
+    text = read_unpacked(path).decode()
     lines = text.splitlines() if path.suffix != ".json" else [text]
     text = "".join(json.dumps(hostile(json.loads(line), names)) + "\n" for line in lines)
-    path.write_bytes(gzip.compress(text.encode()) if packed else text.encode())
+    path.write_bytes(text.encode())
 
 
 @pytest.mark.slow

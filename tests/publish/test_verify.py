@@ -17,7 +17,7 @@ import pytest
 
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import file_sha256
+from automotive_cosim.formats.files import file_sha256, read_json, read_unpacked
 from automotive_cosim.interface.trace import Step
 from automotive_cosim.publish import archive, episodes
 from automotive_cosim.publish.contents import NAME, read_contents
@@ -90,11 +90,11 @@ def changed(value: Any, steps: tuple) -> Any:
 def documents(path: Path) -> tuple[list[Any], Any]:
     """The JSON documents in a file, and what writes them into it."""
     if path.suffix == ".xz":
-        return [json.loads(lzma.decompress(path.read_bytes()))], lambda made: path.write_bytes(
+        return [read_json(path)], lambda made: path.write_bytes(
             lzma.compress(json.dumps(made[0]).encode(), preset=0)
         )
     if path.suffix == ".gz":
-        lines = gzip.decompress(path.read_bytes()).decode().splitlines()
+        lines = read_unpacked(path).decode().splitlines()
         return list(map(json.loads, lines)), lambda made: write_trace(
             path.parents[1], path.name.removesuffix(".jsonl.gz"), made
         )
@@ -287,14 +287,13 @@ def test_cut_and_damaged_files_are_found_or_refused_whatever_the_hashes_say(unpa
     row = judged(unpacked)
     files = [f"traces/{row.id}.jsonl.gz", f"traces/{row.id}.judged.json.xz", "manifest.json", ROWS, NAME]
     for name in files:
-        whole = (unpacked / name).read_bytes()
+        pack = {".gz": gzip.compress, ".xz": lzma.compress}.get(Path(name).suffix, bytes)
+        whole = pack((unpacked / name).read_bytes())  # as bundles were before they were packed as a whole
         deep = b"[" * 100_000
         flipped = [bytearray(whole) for _ in range(3)]
         for data in flipped:
             data[rng.randrange(len(data) // 2)] ^= 1 << rng.randrange(7)
-        packs = {".gz": gzip.compress, ".xz": lzma.compress}
-        nested = packs.get(Path(name).suffix, bytes)(deep)
-        for data in (b"", whole[: len(whole) // 2], nested, *flipped):
+        for data in (b"", whole[: len(whole) // 2], pack(deep), *flipped):
             (unpacked / name).write_bytes(data)
             if name == NAME:
                 archive.pack(unpacked, tmp_path / "b.bundle")
@@ -401,7 +400,7 @@ def test_the_commands_tell_by_their_exit_code(packed, tmp_path):
     (tmp_path / "key").write_text("k" * 16)
     of_none = CliRunner().invoke(app, ["publish", "verify", str(packed), "--key", str(tmp_path / "key")])
     assert "drawn from no key" in str(of_none.exception)
-    data = bytearray(packed.read_bytes())
+    data = bytearray(read_unpacked(packed))
     data[data.index(b"wall_seconds") + 16] ^= 1
     (tmp_path / "b.bundle").write_bytes(data)
     bad = CliRunner().invoke(app, ["publish", "verify", str(tmp_path / "b.bundle"), "--replay", "0"])
