@@ -273,7 +273,8 @@ class StagedVehicle(StagedIncident):
             lane = tools.sumo.lane_of(tools.script.car(action.of) or self._car)
             beside = self._beside(lane)
             from_kerb = -action.lanes if tools.network.map.left_hand else action.lanes
-            place = beside.index(lane) + from_kerb if beside else -1
+            opened = len(lanes) - len(beside)  # lanes open and end at the kerb: those of two roads are told from the middle
+            place = beside.index(lane) + opened + from_kerb if beside else -1
             lanes = lanes if beside else ()
         if not lanes:
             return False
