@@ -320,7 +320,8 @@ class Gemini:
 
     def read(self, told: Any) -> ModelReply:
         blocked = (told.get("promptFeedback") or {}).get("blockReason")
-        candidate = _first(told, "candidates") if not blocked else {"finishReason": blocked}
+        empty = {"candidates": []} if "usageMetadata" in told else {}  # a list without entries is left out
+        candidate = _first(empty | told, "candidates") if not blocked else {"finishReason": blocked}
         say, calls, reasoning = "", list[Json](), ""
         for part in _objects((candidate.get("content") or {}).get("parts")):
             if "functionCall" in part:
