@@ -320,8 +320,9 @@ class Gemini:
 
     def read(self, told: Any) -> ModelReply:
         blocked = (told.get("promptFeedback") or {}).get("blockReason")
-        empty = {"candidates": []} if "usageMetadata" in told else {}  # a list without entries is left out
-        candidate = _first(empty | told, "candidates") if not blocked else {"finishReason": blocked}
+        if "usageMetadata" in told:  # a list without entries is left out
+            told = {"candidates": []} | told
+        candidate = _first(told, "candidates") if not blocked else {"finishReason": blocked}
         say, calls, reasoning = "", list[Json](), ""
         for part in _objects((candidate.get("content") or {}).get("parts")):
             if "functionCall" in part:

@@ -551,13 +551,13 @@ triggeringEntitiesRule="any"><EntityRef entityRef="ego"/></TriggeringEntities><E
 relativeDistanceType="longitudinal"/></EntityCondition></ByEntityCondition></Condition>"""
 
 
-def together(folder, simulations, *events, other_mps=15, seconds=60, sections=(section(0),)):
+def together(folder, simulations, *events, other_mps=15, seconds=60, right=()):
     """How far the ego is along the road, how far the other one, its speed, and its y, each second."""
     first = SPEED.format("step", "time", 0, '<AbsoluteTargetSpeed value="{}"/>')
     places = private("ego", AT.format(-1, 50), first.format(10)) + private(
         "other", AT.format(-2, 150), first.format(other_mps)
     )
-    (folder / "road.xodr").write_text(road(*sections), "utf-8")
+    (folder / "road.xodr").write_text(road(section(0, *right), section(110)), "utf-8")
     text = TOGETHER.format(car=VEHICLE.format("v"), places=places, events="".join(events))
     (folder / "told.xosc").write_text(text, "utf-8")
     scenario = open_scenario(import_openscenario(folder / "told.xosc", folder / "made", country="FR"))
@@ -590,7 +590,7 @@ def test_a_distance_is_come_to_and_kept(tmp_path, simulations: Simulations, gap,
 def test_lanes_are_counted_from_another_ones_where_fewer_are(tmp_path, simulations: Simulations, value, lane):
     target = LANES.format(f'<RelativeTargetLane entityRef="ego" value="{value}"/>')
     told = event("moves", do(target), TIME.format(0, "none", 1))
-    seen = together(tmp_path, simulations, told, seconds=5, sections=(section(0, 2), section(110)))
+    seen = together(tmp_path, simulations, told, seconds=5, right=(2,))
     assert seen[-1][3] == pytest.approx(-3.5 * (lane - 0.5), abs=0.1)
 
 
