@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, Field, SkipValidation, WithJsonSchema
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface, OrFile
@@ -175,15 +175,13 @@ def typed(function: Function, call: F, *first: inspect.Parameter, returns: objec
         call: what to call with the arguments by name.
         first: further parameters, in front of the function's own.
     """
-    own = [
-        inspect.Parameter(
-            name,
-            inspect.Parameter.KEYWORD_ONLY,
-            default=inspect.Parameter.empty if name in function.parameters["required"] else None,
-            annotation=Annotated[Any, WithJsonSchema(schema)],
-        )
-        for name, schema in function.parameters["properties"].items()
-    ]
+    own = list[inspect.Parameter]()
+    for name, schema in function.parameters["properties"].items():
+        is_needed = name in function.parameters["required"]
+        takes: Any = str if is_needed and schema.get("type") == "string" else Any  # of all else, mcp reads the JSON
+        kind = Annotated[takes, SkipValidation, WithJsonSchema(schema)]
+        default = inspect.Parameter.empty if is_needed else None
+        own.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind))
     tool: Any = call
     tool.__signature__ = inspect.Signature([*first, *own], return_annotation=returns)
     tool.__annotations__ = {each.name: each.annotation for each in (*first, *own)} | {"return": returns}

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from datetime import datetime
 from itertools import pairwise
@@ -30,7 +30,7 @@ from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import copy, write_whole
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
-from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS, open_to, read_network
+from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS, drives_on_left, open_to, read_network
 from automotive_cosim.traffic.script import EGO as THE_EGO
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
@@ -82,7 +82,8 @@ def import_openscenario(
     if not source.is_file():
         raise ScenarioError(f"there is no road {source}, which {file} needs; give --network a SUMO network")
     with appearing(out, replaces=replaces) as folder:
-        places = RoadPositions(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
+        net, road = road_network(source, folder), source if source.suffix == ".xodr" else story.road
+        places = RoadPositions(net, road, keeps_left=drives_on_left(folder / NET))
         has_place = places.net.hasGeoProj() and not read_network(folder / NET).unplaced
         text = scenario_text(out.name, file, story, places, country, has_place=has_place)
         write_whole(folder / "scenario.toml", text)
@@ -323,6 +324,7 @@ def _scripted(
             "keeps_lane": True,
         },
     )
+    _check_lanes(entity, lane, way, -1 if places.keeps_left else 1)
     for action in sorted((*signals, *entity.actions), key=lambda each: each["at_s"]):
         told = {key: value for key, value in action.items() if key not in _UNWRITTEN}
         for key, whose in (("meets", entity), ("of_meets", story.entities.get(action.get("of", "")))):
@@ -340,6 +342,21 @@ def _scripted(
         for number, group in enumerate(action["when"]):
             for condition in group:
                 yield "[[incidents.actions.when]]", _waits(condition, number, story, places)
+
+
+def _check_lanes(entity: ScriptEntity, lane: Any, way: Sequence[Any], left: int) -> None:
+    """Checks that no change from its own lane leads onto the other side of the road, or off it."""
+    counts = [sum(each.allows("passenger") for each in edge.getLanes()) for edge in way]
+    everywhere = set(range(counts[0] - max(counts), max(counts)))
+    at = {_place_of(lane)}
+    for action in sorted(entity.actions, key=lambda each: each["at_s"]):
+        if action.get("lanes") and action["of"] == entity.name:
+            moved = everywhere & {each + left * action["lanes"] for each in at}
+            if not moved:
+                raise action["element"].refused(f"leads {entity.name} to a lane that its side of the road has not")
+            at |= moved
+        elif "lanes" in action or "lane_id" in action:
+            at = everywhere
 
 
 def _called(name: str, story: ReadStory) -> str:

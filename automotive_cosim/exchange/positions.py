@@ -45,8 +45,8 @@ class RoadSpot:
 class RoadPositions:
     """A network's lanes for cars, and the roads of the OpenDRIVE file that it is of."""
 
-    def __init__(self, net: Any, road: Path | None) -> None:
-        self.net = net
+    def __init__(self, net: Any, road: Path | None, *, keeps_left: bool = False) -> None:
+        self.net, self.keeps_left = net, keeps_left
         every = [lane for edge in net.getEdges() for lane in edge.getLanes()]
         self._lanes = [lane for lane in every if lane.allows("passenger")]
         self._lines = [LineString(lane.getShape()) for lane in self._lanes]

@@ -320,6 +320,8 @@ class Gemini:
 
     def read(self, told: Any) -> ModelReply:
         blocked = (told.get("promptFeedback") or {}).get("blockReason")
+        if "usageMetadata" in told:  # a list without entries is left out
+            told = {"candidates": []} | told
         candidate = _first(told, "candidates") if not blocked else {"finishReason": blocked}
         say, calls, reasoning = "", list[Json](), ""
         for part in _objects((candidate.get("content") or {}).get("parts")):

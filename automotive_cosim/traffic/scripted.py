@@ -267,15 +267,15 @@ class StagedVehicle(StagedIncident):
     def _move_over(self, action: VehicleAction) -> bool:
         """Whether it can change into the lane that an action asks for: not within a junction."""
         tools, lane = self._tools, self._tools.sumo.lane_of(self._car)
-        lanes = self._beside(lane)
+        lanes = beside = self._beside(lane)
         place = action.lane
         if place is None:
             lane = tools.sumo.lane_of(tools.script.car(action.of) or self._car)
             beside = self._beside(lane)
             from_kerb = -action.lanes if tools.network.map.left_hand else action.lanes
+            from_kerb += len(lanes) - len(beside)  # lanes open and end there
             place = beside.index(lane) + from_kerb if beside else -1
-            lanes = lanes if beside else ()
-        if not lanes:
+        if not lanes or not beside:
             return False
         target = lanes[min(max(0, place), len(lanes) - 1)]
         tools.sumo.vehicle.changeLane(self._car, int(target.rpartition("_")[2]), CUT_OUT_S)

@@ -416,6 +416,13 @@ def test_what_clients_write_as_text_or_null_is_taken(service: EpisodeService) ->
         fenced = '```json\n{"action_type": "wait"}\n```'
         turn = await call(client, "act", {"episode_id": turn["episode_id"], "action": fenced})
         assert turn["feedback"]["code"] == "ok"
+        turn = await call(client, "start", START | {"interface": "functions"})
+        of = {"episode_id": turn["episode_id"]}
+        for text in ("null", '["milk"]', '{"a": 1}', "12"):
+            turn = await call(client, "ask_driver", of | {"text": text})
+            assert turn["feedback"]["code"] == "ok", f"{text} is what was asked"
+        turn = await call(client, "wait", of | {"seconds": "null"})
+        assert turn["feedback"]["code"] == "ok"
 
     inside(service, talk)
 

@@ -551,13 +551,13 @@ triggeringEntitiesRule="any"><EntityRef entityRef="ego"/></TriggeringEntities><E
 relativeDistanceType="longitudinal"/></EntityCondition></ByEntityCondition></Condition>"""
 
 
-def together(folder, simulations, *events, other_mps=15, seconds=60):
-    """How far the ego is along the road, how far the other one, and its speed, each second."""
+def together(folder, simulations, *events, other_mps=15, seconds=60, right=()):
+    """How far the ego is along the road, how far the other one, its speed, and its y, each second."""
     first = SPEED.format("step", "time", 0, '<AbsoluteTargetSpeed value="{}"/>')
     places = private("ego", AT.format(-1, 50), first.format(10)) + private(
         "other", AT.format(-2, 150), first.format(other_mps)
     )
-    (folder / "road.xodr").write_text(road(section(0)), "utf-8")
+    (folder / "road.xodr").write_text(road(section(0, *right), section(110)), "utf-8")
     text = TOGETHER.format(car=VEHICLE.format("v"), places=places, events="".join(events))
     (folder / "told.xosc").write_text(text, "utf-8")
     scenario = open_scenario(import_openscenario(folder / "told.xosc", folder / "made", country="FR"))
@@ -568,7 +568,7 @@ def together(folder, simulations, *events, other_mps=15, seconds=60):
             traffic.advance(1.0)
             cars = {each.vehicle_id == "ego": each for each in traffic.look().vehicles}
             if len(cars) == 2:
-                seen.append((cars[True].x_m, cars[False].x_m, cars[False].speed_mps))
+                seen.append((cars[True].x_m, cars[False].x_m, cars[False].speed_mps, cars[False].y_m))
     finally:
         traffic.close()
     return seen
@@ -581,15 +581,24 @@ def test_a_distance_is_come_to_and_kept(tmp_path, simulations: Simulations, gap,
     told = event("keeps", do(keeps.replace('"3"', f'"{value}"')), TIME.format(0, "none", 1))
     seen = together(tmp_path, simulations, told, seconds=40)
     assert len(seen) == 40
-    for ego_m, other_m, mps in seen[-8:]:
+    for ego_m, other_m, mps, _ in seen[-8:]:
         assert other_m - ego_m == pytest.approx(value if gap == "distance" else value * mps, abs=3)
+
+
+@pytest.mark.sumo
+@pytest.mark.parametrize(("value", "lane"), [(0, 1), (-1, 2), (-2, 3)])
+def test_lanes_are_counted_from_another_ones_where_fewer_are(tmp_path, simulations: Simulations, value, lane):
+    target = LANES.format(f'<RelativeTargetLane entityRef="ego" value="{value}"/>')
+    told = event("moves", do(target), TIME.format(0, "none", 1))
+    seen = together(tmp_path, simulations, told, seconds=5, right=(2,))
+    assert seen[-1][3] == pytest.approx(-3.5 * (lane - 0.5), abs=0.1)
 
 
 @pytest.mark.sumo
 def test_two_vehicles_come_to_their_places_at_once(tmp_path, simulations: Simulations):
     meets = MEETS.format(AT.format(-2, 600), AT.format(-1, 400), SPEEDS[0])
     seen = together(tmp_path, simulations, event("meets", do(meets), TIME.format(0, "none", 1)))
-    when = next(number for number, (ego_m, _, _) in enumerate(seen) if ego_m >= 400 + FRONT_M)
+    when = next(number for number, (ego_m, *_) in enumerate(seen) if ego_m >= 400 + FRONT_M)
     assert seen[when][1] == pytest.approx(600 + FRONT_M, abs=15)
     assert seen[when + 3][2] == pytest.approx(7, abs=0.5)
 
@@ -602,7 +611,7 @@ def test_what_is_carried_out_again_waits_anew(tmp_path, simulations: Simulations
             event("stops", do(speed.format(0)), WITHIN.format("greater"))]  # fmt: skip
     again = [each.replace('maximumExecutionCount="1"', f'maximumExecutionCount="{times}"') for each in told]
     seen = together(tmp_path, simulations, *again, other_mps=0, seconds=50)
-    moves = [mps > 3 for _, _, mps in seen]
+    moves = [mps > 3 for _, _, mps, _ in seen]
     begun = sum(now and not before for before, now in pairwise(moves))
     assert begun >= starts
     assert begun == 1 or times > 1
@@ -618,6 +627,8 @@ def test_what_is_carried_out_again_waits_anew(tmp_path, simulations: Simulations
         ('traffic="true"', 'traffic="false"', "<VisibilityAction> hides a vehicle from traffic"),
         ('pathS="60" laneId="-2"', 'pathS="60" laneId="-7"', "is on lane -7, which the route does not have there"),
         ('pathS="60"', 'pathS="6000"', r"<RoutePosition> is \d+ m beyond the end of its route"),
+        ('<AbsoluteTargetLane value="-2"', '<RelativeTargetLane entityRef="other" value="3"',
+         "leads other to a lane that its side"),
         ('displacement="any" distance', 'displacement="leadingReferencedEntity" distance', "<LongitudinalDistance"),
     ],
 )  # fmt: skip

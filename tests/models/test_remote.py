@@ -438,6 +438,7 @@ def test_calls_that_the_server_took_out_of_the_answer_are_in_its_text(server):
         ("gemini", {"candidates": [{"finishReason": "SAFETY"}]}, "safety"),
         ("gemini", {"promptFeedback": {"blockReason": "OTHER"}}, "other"),
         ("gemini", {"candidates": []}, "no candidates"),
+        ("gemini", {"usageMetadata": {"promptTokenCount": 9}, "modelVersion": "m"}, "no candidates"),
         ("gemini", {"candidates": [{"content": {"parts": [None, {"functionCall": None}]}}]}, ""),
         ("openai", {"output": []}, ""),
         ("openai", {"output": [], "incomplete_details": {"reason": "content_filter"}}, "content_filter"),
