@@ -7,6 +7,7 @@ Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an inf
 from __future__ import annotations
 
 import ast
+import gc
 import io
 import os
 import re
@@ -36,6 +37,9 @@ TERMINATED = 143
 """The same for SIGTERM: ``kill``, a stopped container, a batch system whose time is up."""
 CLOSED_PIPE = 141
 """The same for SIGPIPE: who read the output, such as ``head``, has had enough."""
+
+YOUNG = 50_000
+"""So many new objects before the next look for garbage: of a command's first second, most are classes that stay."""
 
 COMMANDS = (
     ("run", "run:run", RUN),
@@ -183,6 +187,7 @@ def main() -> None:
             signal.signal(signal.SIGTERM, terminate)
         threading.Timer(0.01, os.kill, (os.getpid(), number)).start()
 
+    gc.set_threshold(YOUNG)
     signal.signal(signal.SIGTERM, terminate)
     sys.unraisablehook = swallowed
     open_streams()

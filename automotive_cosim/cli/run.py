@@ -203,7 +203,6 @@ def _recorded(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
     from automotive_cosim.report.film import Film
-    from automotive_cosim.report.page import write_page
     from automotive_cosim.run.record import Recorder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.trial import run_trial
@@ -215,15 +214,16 @@ def _recorded(
     view = Live(console, by_hand=by_hand, brief=bool(more))
     observers = [recorder, RoadRecorder(folder, setup.about), Film(folder), Notes() if as_json else view, *more]
     try:
-        row = run_trial(setup, player, observers, simulations=simulations, wall_s=wall_s)
+        return run_trial(setup, player, observers, simulations=simulations, wall_s=wall_s)
     except KeyboardInterrupt:
         if recorder.has_begun:
-            write_page(folder)
             typer.echo(f"recorded so far: {folder}", err=True)
         raise
-    if recorder.has_begun:
-        write_page(folder)
-    return row
+    finally:
+        if recorder.has_begun:
+            from automotive_cosim.report.page import write_page
+
+            write_page(folder)
 
 
 def _recorded_pair(

@@ -22,7 +22,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking.dialogue import TALKED_OVER, Question, Says, dialogue, questions, spoken_s, topic_of
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import Verdict, judge
-from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.fork import RemoteTraffic, Simulations
 
 AFTERMATH_S = 12.0
 """The car drives on for this long after the end: enough for a driver to react and to brake from 80 to 50 km/h."""
@@ -80,6 +80,8 @@ class Episode(JudgedSession):
                 missed = missed or error
                 continue
             try:
+                if isinstance(drive := hand_over.world.traffic.wrapped, RemoteTraffic):
+                    drive.handed_over()
                 return cls.take_over(hand_over, spec.session(channels()), observer)
             except BaseException:
                 hand_over.world.close()

@@ -12,6 +12,7 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from statistics import fmean
+from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import CosimError
@@ -27,8 +28,10 @@ from automotive_cosim.traffic.options import (
     run_options,
     stated_and_set,
 )
-from automotive_cosim.traffic.running import Running
 from automotive_cosim.traffic.stability import SUMMARY, summary
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.running import Running
 
 HALF_S = 300.0
 """Time for the traffic to build up, and time in which it is compared."""

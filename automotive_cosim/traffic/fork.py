@@ -30,7 +30,7 @@ from automotive_cosim.errors import NO_FORK, SetupError, TrafficError
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
-from automotive_cosim.traffic.keeper import started
+from automotive_cosim.traffic.keeper import departing, handed_over, started
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
@@ -440,6 +440,10 @@ class RemoteTraffic(_Remote):
         twin._ahead.extend(self._ahead)
         return twin
 
+    def handed_over(self) -> None:
+        """Somebody takes the drive over here: a later command in which one departs alike begins here."""
+        handed_over(self._process)
+
     def close(self) -> None:
         """See ``Traffic.close``; the last of a road's drives ends its process."""
         self.road._is_busy = self.road._is_busy or self._is_busy
@@ -482,7 +486,9 @@ class _Source:
 
     def departed(self, plan: EgoPlan) -> RemoteTraffic:
         """A drive in a process of its own."""
-        process = self.copied()
+        with self._lock:
+            warm = self._ready()
+        process = self.copied() if self._warm_calls else departing(warm, self._setup, plan, self.copied)
         try:
             state = process.call("depart", plan)
         except BaseException:

@@ -1,5 +1,5 @@
 """Warm traffic that outlives the command: one process per user keeps what was used last, and later commands fork
-from it instead of loading and warming up again.
+from it instead of loading and warming up again. It also keeps where drives in it were handed over last.
 
 ``automotive-cosim keep`` starts it. It listens in a folder that nobody else can enter, answers no other user, and
 ends by itself. Its name goes by this program's code and versions, and what it keeps by the content of the
@@ -34,8 +34,9 @@ from automotive_cosim.errors import CosimError, SetupError, TrafficError, UserEr
 from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.formats.writing import locked, make_folder, remove
 from automotive_cosim.formats.xml import without_collection
-from automotive_cosim.traffic.base import WarmUpProgress
+from automotive_cosim.traffic.base import EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.channel import ClosedError, MessageChannel
+from automotive_cosim.traffic.driven import Departure, DrivenProcess
 from automotive_cosim.traffic.options import Setup, read_configuration
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess, environment
 
@@ -51,6 +52,8 @@ _Files: TypeAlias = tuple[tuple[str, str], ...]
 """Files with their SHA-256."""
 _Wanted: TypeAlias = tuple[Setup, _Files]
 """The traffic, and its files."""
+MOST_DRIVES = 8
+"""In the same traffic; a copy has written to some 20 MB of its memory when it is handed over."""
 MOST_READ = 64
 """Scenarios without their networks: a few kilobytes each."""
 T = TypeVar("T")
@@ -67,7 +70,15 @@ class _Kept:
     process: RemoteProcess | None = None
     network: bytes = b""
     """Pickled once for all."""
+    drives: OrderedDict[Departure, tuple[RemoteProcess, bytes]] = field(default_factory=OrderedDict)
+    """Where each was handed over, and the answers on its way, pickled."""
     used_s: float = field(default_factory=time.monotonic)
+
+    @property
+    def memory_bytes(self) -> int:
+        """Memory of all that."""
+        own = sum(each.own_bytes + len(answers) for each, answers in self.drives.values())
+        return own if self.process is None else own + self.process.memory_bytes
 
     def line(self) -> str:
         """In words, for who asks what is kept."""
@@ -75,7 +86,7 @@ class _Kept:
             return "being warmed up"
         what = f"{self.setup.scenario.config.parent.name}, seed {self.setup.seed}"
         used_min = (time.monotonic() - self.used_s) / 60
-        return f"{what}: {self.process.memory_bytes / 1e6:.0f} MB, used {used_min:.0f} min ago"
+        return f"{what}: {self.memory_bytes / 1e6:.0f} MB, used {used_min:.0f} min ago"
 
 
 class _Keeper:
@@ -126,6 +137,12 @@ class _Keeper:
                 if len(self._read) > MOST_READ:
                     self._read.popitem(last=False)
                 return
+            if what == "driven":
+                self._take(given, channel)
+                return
+            if what == "drive":
+                self._give(given, channel)
+                return
             try:
                 self._copy(given, channel)
             except CosimError as error:  # as from a simulation's process
@@ -152,19 +169,46 @@ class _Keeper:
                     kept.network = pickle.dumps(network, pickle.HIGHEST_PROTOCOL)
                 copy = kept.process.fork(None)
                 kept.used_s = self._used_s = time.monotonic()
-                found = kept.setup, kept.network, copy.pid
+                found = kept.setup, kept.network, copy.pid, kept.process.pid
             is_whole = not is_new or _wanted(setup) == wanted  # or somebody has changed its files meanwhile
         finally:
             with self._lock:
                 if not is_whole:
                     self._kept.pop(wanted, None)
-                while len(self._kept) > 1 and self._memory_bytes() > self._most_bytes:
-                    self._kept.popitem(last=False)
+                self._make_room()
         channel.send(("done", found))
         copy.hand_over(channel)
 
-    def _memory_bytes(self) -> int:
-        return sum(each.process.memory_bytes for each in self._kept.values() if each.process is not None)
+    def _take(self, departure: Departure, channel: MessageChannel) -> None:
+        """Keeps a drive where it is handed over."""
+        answers, pid = channel.receive()
+        process = RemoteProcess.taken(channel, pid, TIMEOUT_S)
+        with self._lock:
+            drives = self._drives(departure)
+            drives[departure] = process, answers
+            if len(drives) > MOST_DRIVES:
+                drives.popitem(last=False)
+            self._make_room()
+
+    def _give(self, departure: Departure, channel: MessageChannel) -> None:
+        """Sends the answers of a drive up to its hand-over and a copy from there; None if it is not kept."""
+        with self._lock:
+            process, answers = self._drives(departure).get(departure, (None, b""))
+            copy = None
+            with suppress(TrafficError):
+                copy = process and process.fork(None)
+        channel.send(copy and (answers, copy.pid))
+        if copy:
+            copy.hand_over(channel)
+
+    def _drives(self, departure: Departure) -> OrderedDict[Departure, tuple[RemoteProcess, bytes]]:
+        """Those in the traffic of a departure; of traffic that is kept no longer, they are not kept either."""
+        in_it = (each.drives for each in self._kept.values() if each.process and each.process.pid == departure[0])
+        return next(in_it, OrderedDict())
+
+    def _make_room(self) -> None:
+        while len(self._kept) > 1 and sum(each.memory_bytes for each in self._kept.values()) > self._most_bytes:
+            self._kept.popitem(last=False)
 
 
 def started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
@@ -173,6 +217,34 @@ def started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> 
         with suppress(ClosedError, OSError, SetupError, TrafficError):  # there is none of one's own, or it fails
             return _copied(setup, progress, timeout_s)
     return RemoteProcess.start(setup, progress, timeout_s)
+
+
+def departing(
+    warm: RemoteProcess, setup: Setup, plan: EgoPlan, copied: Callable[[], RemoteProcess]
+) -> RemoteProcess:
+    """A copy of warm traffic in which a drive departs; where that is kept, one that has driven to its hand-over."""
+    if not warm.kept_as:
+        return copied()
+    departure = warm.kept_as, setup, plan
+    with suppress(ClosedError, OSError, SetupError, TrafficError), _connected() as connection:
+        channel = MessageChannel(connection)
+        channel.send(("drive", departure))
+        if found := channel.receive():
+            answers, pid = found
+            process = RemoteProcess.taken(channel, pid, TIMEOUT_S)
+            process.call("find", sys.path)
+            return DrivenProcess(process, departure, copied, pickle.loads(answers))
+    return DrivenProcess(copied(), departure, copied)
+
+
+def handed_over(drive: RemoteProcess) -> None:
+    """Has a drive kept where it is now, if its traffic is, for later commands in which one departs alike."""
+    if isinstance(drive, DrivenProcess) and (answers := drive.answers()):
+        with suppress(ClosedError, OSError, SetupError), _connected() as connection:
+            channel, copy = MessageChannel(connection), drive.fork(None)
+            channel.send(("driven", drive.departure))
+            channel.send((pickle.dumps(answers, pickle.HIGHEST_PROTOCOL), copy.pid))
+            copy.hand_over(channel)
 
 
 def read_once(kind: str, files: Iterable[Path], read: Callable[[], T]) -> T:
@@ -233,8 +305,9 @@ def _copied(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> 
         if outcome == "error":
             kind, text = value
             raise kind.__new__(kind, text)  # the text is whole already
-        theirs, pickled, pid = value
+        theirs, pickled, pid, kept_as = value
         process = RemoteProcess.taken(channel, pid, timeout_s)
+        process.kept_as = kept_as
     process.call("find", sys.path)
     if theirs != setup:
         return process, process.call("move", setup.scenario)

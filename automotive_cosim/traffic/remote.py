@@ -83,13 +83,15 @@ class _Silence:
 class RemoteProcess:
     """A handle of a simulation's process."""
 
-    def __init__(self, channel: MessageChannel, complaints: _Complaints, timeout_s: float) -> None:
+    def __init__(self, channel: MessageChannel, complaints: _Complaints, timeout_s: float, pid: int = 0) -> None:
         self._channel = channel
         self._complaints = complaints
         self._timeout_s = timeout_s
         self._broken = ""
         self._popen: subprocess.Popen[bytes] | None = None
-        self.pid = 0
+        self.pid = pid
+        self.kept_as = 0
+        """By which name the keeper knows of what it is a copy; 0 without one."""
         self._end: weakref.finalize[..., RemoteProcess] = weakref.finalize(self, channel.close)
         """Finalizer; even without it, a process ends when its connection is gone."""
 
@@ -208,9 +210,12 @@ class RemoteProcess:
     @classmethod
     def taken(cls, channel: MessageChannel, pid: int, timeout_s: float) -> RemoteProcess:
         """A process that somebody else hands over through a channel."""
-        process = cls(MessageChannel(channel.receive_socket()), _Complaints(), timeout_s)
-        process.pid = pid
-        return process
+        return cls(MessageChannel(channel.receive_socket()), _Complaints(), timeout_s, pid)
+
+    def given_up(self) -> tuple[MessageChannel, _Complaints, float, int]:
+        """What another handle of a process that was not started here is made of; this one is of none."""
+        self._end.detach()
+        return self._channel, self._complaints, self._timeout_s, self.pid
 
     def hand_over(self, channel: MessageChannel) -> None:
         """Hands it to whoever is on the other side of a channel; it is no longer this process's."""
@@ -225,6 +230,15 @@ class RemoteProcess:
         except OSError:
             return 0
         return int(pages) * os.sysconf("SC_PAGE_SIZE")
+
+    @property
+    def own_bytes(self) -> int:
+        """Memory that it does not share, as a copy shares most; 0 if the platform does not say, or it has died."""
+        try:
+            lines = Path(f"/proc/{self.pid}/smaps_rollup").read_text(encoding="ascii").splitlines()
+        except OSError:
+            return 0
+        return 1024 * sum(int(line.split()[1]) for line in lines if line.startswith("Private_"))
 
     def close(self) -> None:
         """Ends the process and waits for it; may be called again."""

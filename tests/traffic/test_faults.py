@@ -17,11 +17,13 @@ from threading import Timer
 
 import pytest
 
+from automotive_cosim.contracts import SlowDown
 from automotive_cosim.errors import ScenarioError, SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.traffic import keeper, remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.channel import MessageChannel
+from automotive_cosim.traffic.driven import DrivenProcess
 from automotive_cosim.traffic.fork import Forked
 from tests.traffic.calls import run_on, seen, watch
 from tests.traffic.in_process import InProcess
@@ -208,6 +210,7 @@ import sys
 from automotive_cosim.scenarios import load
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.channel import MessageChannel
+from automotive_cosim.traffic.driven import DrivenProcess
 from automotive_cosim.traffic.fork import Forked
 grid = load("grid")
 simulation = Forked(grid)
@@ -408,6 +411,31 @@ def test_later_commands_fork_from_what_a_keeper_has_warmed_and_drive_alike(
     assert not list(own_home.iterdir())
 
 
+def test_a_drive_that_departs_alike_begins_where_one_was_handed_over_and_asks_what_it_likes(
+    own_home: Path, forked: Forked, grid: Scenario, hurried: EgoPlan
+) -> None:
+    def driven(simulation: Forked, asked_after: int) -> tuple[list[object], bool]:
+        with closing(simulation.depart(hurried)) as drive:
+            passed: list[object] = [drive.state]
+            for second in range(12):
+                if second == asked_after:
+                    passed.append(drive.request(SlowDown(20.0)))
+                passed += drive.advance(1.0), drive.look(), drive.alternatives()
+                if second == 7:
+                    drive.handed_over()
+            with closing(drive.branch()) as twin:
+                passed.append(twin.advance(5.0))
+            process = drive._process
+            return passed, isinstance(process, DrivenProcess) and not process.answers()
+
+    keeper.keep(5)
+    for count, asked_after in enumerate((99, 99, 8, 3, 10)):
+        with closing(Forked(grid, 1)) as copy:
+            passed, was_known = driven(copy, asked_after)
+        assert passed == driven(forked, asked_after)[0]
+        assert was_known == (count > 0)
+
+
 def test_what_a_keeper_was_told_of_files_is_not_read_again(own_home: Path, tmp_path: Path) -> None:
     file, read, later = tmp_path / "net.xml", list[str](), list[str]()
 
@@ -495,7 +523,7 @@ def test_nobody_s_copy_fails_because_the_keeper_needs_room_and_what_cannot_be_wa
             one._copy(name, MessageChannel(ours))  # type: ignore[arg-type]
 
     class _Warm:
-        pid, memory_bytes, is_broken = 0, 1, False
+        pid, memory_bytes, is_broken = 1, 1, False
 
         def __init__(self, name: str) -> None:
             self.name = name
