@@ -8,17 +8,18 @@ from typing import Annotated, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json, reads_results
+from automotive_cosim.cli.options import print_json, reads_results, tells_json
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.settings import CompareSettings
 
 
+@tells_json
 @reads_results
 @takes(CompareSettings)
 def compare(
     before: Annotated[Path, typer.Argument(help="Results folder of `eval` before the change.", show_default=False)],
     after: Annotated[Path, typer.Argument(help="Results folder of `eval` after the change.", show_default=False)],
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Compare two evaluations on the same episodes.

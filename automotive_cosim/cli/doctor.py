@@ -17,7 +17,7 @@ from typing import Annotated, NamedTuple
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.contracts.plain import counted
 
 STEP_IN, STEP_OUT = 600, 50
@@ -69,6 +69,7 @@ EXTRAS = {
 }
 
 
+@tells_json
 def doctor(
     model: Annotated[
         str,
@@ -79,7 +80,7 @@ def doctor(
             show_default=False,
         ),
     ] = "",
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Check this machine and say what is missing and how to install it.
 

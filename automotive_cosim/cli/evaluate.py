@@ -20,12 +20,12 @@ from automotive_cosim.cli.batches import (
 from automotive_cosim.cli.conditions import takes_conditions, values_of
 from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.options import (
-    AsJson,
     DriveChanges,
     LimitSettings,
     Most,
     TasksFrom,
     print_json,
+    tells_json,
 )
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words, model_and_options
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.rows import TrialRow
 
 
+@tells_json
 @takes_conditions(lists=True)
 @takes(EvaluationSettings, but=[each.name for each in TABLE])
 @takes(ExecutorSettings)
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
 def evaluate(
     most: Most = None,
     tasks_from: TasksFrom = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Run agents over tasks, scenarios and seeds, or over drives.

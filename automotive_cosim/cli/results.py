@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, print_json, reads_results
+from automotive_cosim.cli.options import print_json, reads_results, tells_json
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import install_hint
 
@@ -83,8 +83,9 @@ TrialId = Annotated[
 ]
 
 
+@tells_json
 @reads_results
-def attribute(folder: TrialFolder, episode: TrialId = "", as_json: AsJson = False) -> None:
+def attribute(folder: TrialFolder, episode: TrialId = "", as_json: bool = False) -> None:
     """Measure what each act of a stored run changed, by leaving it out, and add that to its page.
 
     Acts that change nothing alone are also left out in pairs. Of a rerouting study, it tells of each decision.
@@ -118,6 +119,7 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
         typer.echo(f"    effect: {each.effect}")
 
 
+@tells_json
 @reads_results
 def replay(
     folder: TrialFolder,
@@ -129,7 +131,7 @@ def replay(
     out: Annotated[
         Path | None, typer.Option(help="New folder for what is replayed, with its pictures.", show_default=False)
     ] = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Replay the actions of a stored run and compare the traces.
 

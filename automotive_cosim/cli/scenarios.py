@@ -14,7 +14,7 @@ import typer
 from automotive_cosim import scenarios
 from automotive_cosim.cli.batches import tell_notes
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json, tell_opening
+from automotive_cosim.cli.options import print_json, tell_opening, tells_json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm.area import Area
@@ -34,7 +34,8 @@ app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_hel
 
 
 @app.command("list")
-def list_scenarios(as_json: AsJson = False) -> None:
+@tells_json
+def list_scenarios(as_json: bool = False) -> None:
     """List the scenarios that come with the package."""
     from automotive_cosim.scenarios.listing import listed
 
@@ -53,9 +54,10 @@ WHICH = "A shipped scenario's name, a scenario's folder, any .sumocfg or .net.xm
 
 
 @app.command("show")
+@tells_json
 def show(
     scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")],
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Show one scenario: its place, time, weather, ego trips, and the edges that options like --incident name."""
     from automotive_cosim.scenarios import open_scenario
@@ -155,10 +157,11 @@ Names = Annotated[
 
 
 @app.command("check")
+@tells_json
 def check_scenarios(
     names: Names = None,
     quick: Annotated[bool, typer.Option("--quick", help="Skip the hour of traffic.")] = False,
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Prove that scenarios are as described; exit code 1 if one is not.
 

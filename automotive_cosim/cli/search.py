@@ -20,7 +20,7 @@ from automotive_cosim.cli.batches import (
     minutes_in_words,
 )
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AgentName, AsJson, ModelName, print_json
+from automotive_cosim.cli.options import AgentName, ModelName, print_json, tells_json
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.safety.settings import SearchOrder, SearchSettings
@@ -45,13 +45,14 @@ SETTINGS = "search.json"
 """File of a search's folder with what it was started with."""
 
 
+@tells_json
 @takes(SearchOrder)
 @takes(SearchSettings)
 @takes(ExecutorSettings)
 def search(
     agent: AgentName,
     model: ModelName = "rules",
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Search a space of situations and conditions for failures of an agent. Rerun the command to resume.

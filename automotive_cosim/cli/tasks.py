@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, SuiteName, TaskNames, print_json
+from automotive_cosim.cli.options import SuiteName, TaskNames, print_json, tells_json
 from automotive_cosim.cli.validate import validate
 from automotive_cosim.contracts.plain import counted
 
@@ -19,10 +19,11 @@ app.command("validate")(validate)
 
 
 @app.command("list")
+@tells_json
 def list_(
     tasks: TaskNames = "all",
     suite: SuiteName = "standard",
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
+    as_json: bool = False,
 ) -> None:
     """List the tasks, one per line, then their counts by module and dimension, and in the hard suite by ability."""
     from automotive_cosim.run.difficulty import hardest, level, rated
@@ -43,9 +44,10 @@ def list_(
 
 
 @app.command()
+@tells_json
 def show(
     task: Annotated[str, typer.Argument(help="Id of the task.", show_default=False)],
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""
     from automotive_cosim.proof import trail

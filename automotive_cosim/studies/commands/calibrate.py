@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.studies.calibration.settings import CalibrationOptions
 
 if TYPE_CHECKING:
     from automotive_cosim.studies.calibration.result import Calibration
 
 
+@tells_json
 @takes(CalibrationOptions, but=("seed",))
 def calibrate_scenario(
     scenario: Annotated[
@@ -29,7 +30,7 @@ def calibrate_scenario(
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="SCENARIO_calibrated")] = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Fit a scenario's traffic to counts, and simulate until it matches them.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.errors import UserError
 from automotive_cosim.studies.equilibrium.settings import EquilibriumSettings, OptimumSettings
 
@@ -16,11 +16,12 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.equilibrium.optimum import SystemOptimum
 
 
+@tells_json
 @takes(OptimumSettings)
 @takes(EquilibriumSettings, but=("seed",))
 def equilibrate_scenario(
     folder: Annotated[Path, typer.Argument(help="Folder of a scenario, or any .sumocfg.", show_default=False)],
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Give a scenario's drivers their user-equilibrium routes, found by repeated simulation.

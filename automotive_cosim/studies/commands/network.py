@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.cli.batches import ExecutorSettings, tell_notes
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.studies.commands.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
@@ -21,11 +21,12 @@ IN_PYTHON = ("redraw", "step_s")
 """What only a plan of one's own sets."""
 
 
+@tells_json
 @takes(CongestionSettings, but=IN_PYTHON)
 @takes(ExecutorSettings)
 def congestion(
     out: StudyFolder = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Measure the delay of a whole network before and after an intervention, in copies of the same traffic.
@@ -44,11 +45,12 @@ def congestion(
     _run(plan, CONGESTION, "seeds", out, settings, as_json=as_json, about=about)
 
 
+@tells_json
 @takes(DaysSettings, but=("lag",))
 @takes(ExecutorSettings)
 def days(
     out: StudyFolder = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Advise a share of the drivers day after day until traffic settles, beside the user equilibrium.
@@ -63,11 +65,12 @@ def days(
     _run(plan, DAYS, "shares and seeds", out, settings, as_json=as_json)
 
 
+@tells_json
 @takes(AdoptionSettings, but=("emissions", "driver", "every_s", *IN_PYTHON))
 @takes(ExecutorSettings)
 def adoption(
     out: StudyFolder = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Put an assistant into a growing share of the cars of one traffic: what it does to them and to all others.
