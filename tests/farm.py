@@ -1,7 +1,5 @@
 """Warm traffic of the shipped scenarios, once for all workers of a test run: each gets exact copies by fork."""
 
-from __future__ import annotations
-
 import os
 import socket
 import tempfile

@@ -1,7 +1,5 @@
 """Laws over many cases. A law is one test, not hundreds, and lists the cases that break it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from inspect import Signature, signature
 from itertools import islice

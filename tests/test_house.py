@@ -5,8 +5,6 @@ deletion frees is taken off the ceiling, which may stand only a little above wha
 ``python -m tests.test_house`` prints the table as it stands.
 """
 
-from __future__ import annotations
-
 import ast
 from collections import Counter
 from collections.abc import Iterator

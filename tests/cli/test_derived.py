@@ -1,7 +1,5 @@
 """Options that follow from the fields of a dataclass."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, make_dataclass
 from enum import StrEnum

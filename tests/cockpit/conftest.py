@@ -1,7 +1,5 @@
 """A small town and what is outside in it, made by hand."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace

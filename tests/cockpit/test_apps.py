@@ -1,7 +1,5 @@
 """Places and routes, music, phone and the smaller apps: what they hold and what their buttons do."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta

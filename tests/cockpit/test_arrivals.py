@@ -1,7 +1,5 @@
 """Calls and messages that come in while driving."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Photos: they show what they are of, and no list of elements tells it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Whatever stands in a file that a user wrote: it is read, or every problem gets a line of file, line and field."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

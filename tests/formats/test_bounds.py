@@ -1,7 +1,5 @@
 """Every reader of somebody else's file has a bound of cost, and refuses in one line what is just over it."""
 
-from __future__ import annotations
-
 import ast
 import gzip
 import re

@@ -1,7 +1,5 @@
 """``automotive-cosim show context``."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """docs/geo.md and its reference say what is so: their examples are run."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable

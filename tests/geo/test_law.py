@@ -1,7 +1,5 @@
 """What the law's own text says, statement by statement: every rule marked verified gives the answer it should."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Queries in an episode: each stands in the trace with its answer, and its time passes."""
 
-from __future__ import annotations
-
 import itertools
 import json
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The virtual sensor: what may be asked, what it costs, and what no answer says."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import re

@@ -1,7 +1,5 @@
 """The checks of the law: what counts as broken, from when to when, by how much, and who can see it."""
 
-from __future__ import annotations
-
 import itertools
 import subprocess
 import sys

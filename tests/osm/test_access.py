@@ -1,8 +1,6 @@
 """Who may drive which way: every combination of tags that the OSM wiki documents (pages "Key:access", "Key:oneway",
 "Conditional restrictions", "Key:barrier")."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import pytest

@@ -1,7 +1,5 @@
 """The network that netconvert builds, of roads with every kind of tag: no traffic is tried."""
 
-from __future__ import annotations
-
 import gzip
 import re
 import xml.etree.ElementTree as ET

@@ -1,7 +1,5 @@
 """Maps are fetched from a server that the user names; here one that stands in for it on this machine."""
 
-from __future__ import annotations
-
 import threading
 import urllib.parse
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """The search for traffic that flows, on figures made up instead of simulated."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Failure classes on planted faults: agents that know the way and go wrong in one respect, on the small grid."""
 
-from __future__ import annotations
-
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Rows come back from their lines, those of older versions too, and bad ones are told."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import MISSING, fields, replace
 from typing import Any

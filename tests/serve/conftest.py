@@ -1,7 +1,5 @@
 """Records made by hand, and a server that shows them: nothing here starts SUMO."""
 
-from __future__ import annotations
-
 import gzip
 import http.client
 import json

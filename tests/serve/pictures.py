@@ -7,8 +7,6 @@
 Records what the pages show first, into ``runs/pictures`` or another folder, unless it is there: some minutes.
 """
 
-from __future__ import annotations
-
 import argparse
 import io
 import json

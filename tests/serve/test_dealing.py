@@ -1,7 +1,5 @@
 """What a study deals to whom, for every number of people and tasks."""
 
-from __future__ import annotations
-
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path

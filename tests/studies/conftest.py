@@ -1,7 +1,5 @@
 """A network of two ways that can be reckoned by hand, drawn here, and studies of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

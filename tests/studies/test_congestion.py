@@ -1,7 +1,5 @@
 """Congestion of a network: what SUMO writes, what is made of it, and that an intervention alone differs."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from dataclasses import MISSING, fields, replace

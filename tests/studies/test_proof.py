@@ -1,7 +1,5 @@
 """Studies find what can be reckoned by hand, and SUMO's own outputs say the same."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator
 from contextlib import closing

@@ -1,7 +1,5 @@
 """Whole studies: the order and number of workers, resuming, what is kept out, the report, the command."""
 
-from __future__ import annotations
-
 import csv
 import gzip
 import hashlib

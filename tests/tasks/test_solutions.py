@@ -1,7 +1,5 @@
 """Laws over every half's reference solutions on a bare cockpit: clean as they are, but not with one switch more."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from types import SimpleNamespace

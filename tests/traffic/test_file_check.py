@@ -1,7 +1,5 @@
 """What a scenario of others may make SUMO do: nothing outside a run's scratch folder."""
 
-from __future__ import annotations
-
 import errno
 import gzip
 import re

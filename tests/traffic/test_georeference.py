@@ -1,7 +1,5 @@
 """Which projections are believed, and where a network lies that was moved."""
 
-from __future__ import annotations
-
 import gzip
 import math
 import re

@@ -1,7 +1,5 @@
 """Networks: what the edges say, and how the sums over a route hold up against SUMO's own."""
 
-from __future__ import annotations
-
 import gzip
 import math
 import shutil

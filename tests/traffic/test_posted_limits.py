@@ -1,7 +1,5 @@
 """Limits that hold at certain hours: read as the map writes them, and followed by the road, the car and its map."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from contextlib import closing
