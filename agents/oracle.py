@@ -10,15 +10,7 @@ from automotive_cosim.cockpit.actions import point
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.cockpit.touchscreen import OPPOSITE
-from automotive_cosim.contracts import (
-    Action,
-    ActionType,
-    Direction,
-    Element,
-    FeedbackCode,
-    GoalStatus,
-    Observation,
-)
+from automotive_cosim.contracts import Action, ActionType, Direction, Element, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.contracts.given import See
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.episode.episode import Episode

@@ -16,15 +16,7 @@ from automotive_cosim.agents import prompt_parts
 from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.settings import AgentProfile
 from automotive_cosim.cockpit.actions import FIELDS, to_json
-from automotive_cosim.contracts import (
-    Action,
-    ActionType,
-    Element,
-    GpsFix,
-    Json,
-    Observation,
-    VehicleState,
-)
+from automotive_cosim.contracts import Action, ActionType, Element, GpsFix, Json, Observation, VehicleState
 from automotive_cosim.contracts.given import Interface, PromptLength
 from automotive_cosim.interface.functions import signature
 from automotive_cosim.interface.observe import Channel

@@ -310,14 +310,7 @@ def main() -> None:
     given = parser.parse_args()
     print(f"load {os.getloadavg()[0]:.1f}")
     if given.streets:
-        columns = [
-            "edges",
-            "vehicles",
-            "warm-up",
-            "fork",
-            "decisions",
-            "a decision",
-        ]
+        columns = ["edges", "vehicles", "warm-up", "fork", "decisions", "a decision"]
         print(f"| {' | '.join(columns)} |\n|{'---:|' * len(columns)}")
         for streets in given.streets:
             print(f"| {on_network(streets, given.trips)} |", flush=True)

@@ -250,8 +250,7 @@ MADE: Mapping[str, Callable[[], str]] = {
         ("file", "read by", "bound"), [(each.what, f"`{each.where}`", each.bound) for each in READERS]
     ),
     "settings": lambda: _table(
-        ("factor of drives", "value"),
-        [(f"`{name}`", about) for name, about in field_docs(DriveSettings).items()],
+        ("factor of drives", "value"), [(f"`{name}`", about) for name, about in field_docs(DriveSettings).items()]
     ),
     "situations": lambda: _table(
         ("scenario", "what happens"), [(f"`{name}`", read_space(path).about) for name, path in LIBRARY.items()]

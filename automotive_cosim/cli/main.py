@@ -175,8 +175,7 @@ def _options(
         bool, typer.Option("--debug", envvar="AUTOMOTIVE_COSIM_DEBUG", help="Show the traceback of an error.")
     ] = False,
     as_json: Annotated[
-        bool,
-        typer.Option("--json", help="Where a command lists or reports: print JSON and nothing else."),
+        bool, typer.Option("--json", help="Where a command lists or reports: print JSON and nothing else.")
     ] = False,
 ) -> None:
     if debug:

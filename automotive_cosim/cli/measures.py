@@ -71,8 +71,7 @@ def measures(
     if not rows:
         whose = "any two vehicles" if everyone else "the ego and another vehicle (--everyone looks at all pairs)"
         typer.echo(
-            f"no encounters within {thresholds.range_m:g} m in {counted(seconds, 'second')}, of {whose}",
-            err=True,
+            f"no encounters within {thresholds.range_m:g} m in {counted(seconds, 'second')}, of {whose}", err=True
         )
     if out is None:
         typer.echo(as_csv(rows, kind, column), nl=False)

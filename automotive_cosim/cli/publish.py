@@ -65,8 +65,7 @@ def verify(
         ),
     ] = None,
     key: Annotated[
-        Path | None,
-        typer.Option(help="File with the key of a hidden split, to print its published hashes again."),
+        Path | None, typer.Option(help="File with the key of a hidden split, to print its published hashes again.")
     ] = None,
     as_json: bool = False,
     **settings: Any,

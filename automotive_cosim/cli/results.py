@@ -33,8 +33,7 @@ def report(
         typer.Option(help="Agent of the safety report or the protocol, if there are several.", show_default=False),
     ] = None,
     protocol: Annotated[
-        str | None,
-        typer.Option(help="Protocol whose rows the runs speak for: euroncap-2026.", show_default=False),
+        str | None, typer.Option(help="Protocol whose rows the runs speak for: euroncap-2026.", show_default=False)
     ] = None,
 ) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""

@@ -55,10 +55,7 @@ WHICH = "A shipped scenario's name, a scenario's folder, any .sumocfg or .net.xm
 
 @app.command("show")
 @tells_json
-def show(
-    scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")],
-    as_json: bool = False,
-) -> None:
+def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: bool = False) -> None:
     """Show one scenario: its place, time, weather, ego trips, and the edges that options like --incident name."""
     from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.scenarios.streets import streets

@@ -49,12 +49,7 @@ SETTINGS = "search.json"
 @takes(SearchOrder)
 @takes(SearchSettings)
 @takes(ExecutorSettings)
-def search(
-    agent: AgentName,
-    model: ModelName = "rules",
-    as_json: bool = False,
-    **settings: Any,
-) -> None:
+def search(agent: AgentName, model: ModelName = "rules", as_json: bool = False, **settings: Any) -> None:
     """Search a space of situations and conditions for failures of an agent. Rerun the command to resume.
 
     Combinations that are spread evenly run in parallel, or on a cluster; what is learnt from them runs here, one
@@ -96,12 +91,7 @@ def search(
     check_space(space, plan)
     folder = order.out or Path("runs") / f"search-{file.stem}-{agent.replace(':', '.')}"
     console = Console(highlight=False)
-    about: Json = {
-        "space": file.read_text(encoding="utf-8"),
-        "agent": agent,
-        "model": model,
-        **asdict(how),
-    }
+    about: Json = {"space": file.read_text(encoding="utf-8"), "agent": agent, "model": model, **asdict(how)}
     laid, used_s = _before(folder, about, may_use.points or LAID)
     make_sampler(how.sampler, space, laid, how.seed)  # which may need what is not installed
     where = choice.opened()

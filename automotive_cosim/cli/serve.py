@@ -16,9 +16,7 @@ def serve(
     folders: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Folders of `run` or `eval`, or folders that hold them.",
-            metavar="[RUNS]...",
-            show_default="runs",
+            help="Folders of `run` or `eval`, or folders that hold them.", metavar="[RUNS]...", show_default="runs"
         ),
     ] = None,
     **settings: Any,

@@ -218,8 +218,7 @@ def _is_number(value: object) -> bool:
 
 @tells_json
 def memory(
-    file: Annotated[Path, typer.Argument(help="The file given to `run --memory`.")],
-    as_json: bool = False,
+    file: Annotated[Path, typer.Argument(help="The file given to `run --memory`.")], as_json: bool = False
 ) -> None:
     """Show what ASURADA remembers: which strategy it tried where, for what, and how often it worked."""
     from automotive_cosim.agents.memory import Memory

@@ -169,9 +169,7 @@ FIELDS: Mapping[ActionType, Takes] = {
         words="waits {for_s} s",
     ),
     ActionType.ANSWER: Takes(
-        "tell the driver something; it is no warning",
-        required=("text",),
-        words="says “{text}”",
+        "tell the driver something; it is no warning", required=("text",), words="says “{text}”"
     ),
     ActionType.STATUS: Takes(
         "declare how it ended: complete when it is done; infeasible, after an answer that tells the driver why, "

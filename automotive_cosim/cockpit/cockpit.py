@@ -37,15 +37,7 @@ from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.sensing import put_back, readings, sense
-from automotive_cosim.cockpit.signals import (
-    HMI,
-    LIGHTS,
-    LINK,
-    LeafKind,
-    Signal,
-    Signals,
-    named,
-)
+from automotive_cosim.cockpit.signals import HMI, LIGHTS, LINK, LeafKind, Signal, Signals, named
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import CommandRecord, State
 from automotive_cosim.cockpit.touchscreen import Touchscreen

@@ -96,9 +96,7 @@ class Canvas:
             if across[0] < across[2] and across[1] < across[3]:
                 self._draw.rectangle((across[0], across[1], across[2] - 1, across[3] - 1), fill)
         for corner, mask in zip(
-            ((left, top), (right - r, top), (right - r, bottom - r), (left, bottom - r)),
-            _corners(r),
-            strict=True,
+            ((left, top), (right - r, top), (right - r, bottom - r), (left, bottom - r)), _corners(r), strict=True
         ):
             self.image.paste(fill, corner, mask)
 

@@ -17,12 +17,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.mapdraw import draw
 from automotive_cosim.cockpit.photos import photo
 from automotive_cosim.cockpit.telltales import SignKind, colour, sign_picture, symbol
-from automotive_cosim.cockpit.theme import (
-    Colour,
-    Icon,
-    Palette,
-    Type,
-)
+from automotive_cosim.cockpit.theme import Colour, Icon, Palette, Type
 from automotive_cosim.cockpit.widgets import (
     Badge,
     Bar,
@@ -189,14 +184,7 @@ def _choice_icon(choice: Choice) -> int:
 
 
 def _content(
-    canvas: Canvas,
-    rect: Rect,
-    icon: Icon | None,
-    size: int,
-    text: str,
-    style: Type,
-    ink: Colour,
-    stacked: bool,
+    canvas: Canvas, rect: Rect, icon: Icon | None, size: int, text: str, style: Type, ink: Colour, stacked: bool
 ) -> None:
     """An icon, a text or both, in the middle of a box."""
     if icon is None or not text:

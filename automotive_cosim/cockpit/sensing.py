@@ -185,11 +185,7 @@ def _climate(state: State, driving: DrivingState, weather: Weather, dt_s: float)
     signals = state.signals
     rain = 0.0 if driving.road.in_tunnel else weather.precipitation
     air = Air(
-        weather.temperature_2m,
-        weather.relative_humidity_2m,
-        rain,
-        driving.speed_mps,
-        signals[OUTSIDE.FINE_DUST],
+        weather.temperature_2m, weather.relative_humidity_2m, rain, driving.speed_mps, signals[OUTSIDE.FINE_DUST]
     )
     cabin = state.cabin or Cabin.at(state.cabin_start, air)
     state.cabin = cabin.after(dt_s, state.vehicle.controls(rain), air)

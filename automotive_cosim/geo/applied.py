@@ -7,14 +7,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import NamedTuple
 
-from automotive_cosim.contracts import (
-    KMH_PER_MPS,
-    STANDING_BELOW_MPS,
-    DrivingState,
-    GpsFix,
-    RoadHere,
-    Weather,
-)
+from automotive_cosim.contracts import KMH_PER_MPS, STANDING_BELOW_MPS, DrivingState, GpsFix, RoadHere, Weather
 from automotive_cosim.geo.place import Place
 from automotive_cosim.geo.rulefacts import CONDITIONS, RuleFacts, Test
 from automotive_cosim.geo.rules import TOPICS, Jurisdiction, Rule, Value

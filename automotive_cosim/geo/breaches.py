@@ -17,13 +17,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Protocol
 
-from automotive_cosim.contracts import (
-    KMH_PER_MPS,
-    NO_LIMIT,
-    STANDING_BELOW_MPS,
-    DrivingState,
-    Limit,
-)
+from automotive_cosim.contracts import KMH_PER_MPS, NO_LIMIT, STANDING_BELOW_MPS, DrivingState, Limit
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Rule, Status

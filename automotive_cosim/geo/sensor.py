@@ -324,10 +324,7 @@ _SUBJECTS = (
         on_board=True,
     ),
     _Subject(
-        "position",
-        _set("position where location gps coordinates latitude longitude"),
-        _position,
-        on_board=True,
+        "position", _set("position where location gps coordinates latitude longitude"), _position, on_board=True
     ),
 )
 """What is of the moment is told first: an answer is cut off at its end."""

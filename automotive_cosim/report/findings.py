@@ -201,10 +201,7 @@ def by_label(
     found = {value for row in results.rows for value in of(row)}
     values = [value for value in order if value in found] + sorted(found.difference(order))
     rows: list[TableRow] = [
-        (
-            value,
-            *(rate_cell(row for row in results.of(each) if value in of(row)) for each in results.contestants),
-        )
+        (value, *(rate_cell(row for row in results.of(each) if value in of(row)) for each in results.contestants))
         for value in values
     ]
     columns = (name.capitalize(), *(each.label for each in results.contestants))

@@ -130,9 +130,7 @@ def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE
 
 
 def rate(
-    outcomes: Iterable[tuple[Hashable, bool | None]],
-    not_run: int = 0,
-    confidence: float = CONFIDENCE,
+    outcomes: Iterable[tuple[Hashable, bool | None]], not_run: int = 0, confidence: float = CONFIDENCE
 ) -> Rate:
     """A rate with Wilson's interval at the effective sample size (Korn and Graubard 1998, Survey Methodology 24).
 

@@ -47,11 +47,7 @@ TOGETHER_S, MOST_PAIRS = 60.0, 15
 
 
 def attribute(
-    folder: Path,
-    trial: str = "",
-    only: Collection[int] | None = None,
-    *,
-    simulations: Simulations | None = None,
+    folder: Path, trial: str = "", only: Collection[int] | None = None, *, simulations: Simulations | None = None
 ) -> list[ActEffect]:
     """Measures what each act of a stored trial changed, and keeps it (``path_of``) unless it was asked for some.
 

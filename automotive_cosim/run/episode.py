@@ -80,10 +80,7 @@ def estimates(steps: Sequence[Step], moments: Sequence[Moment]) -> tuple[Positio
             continue
         found.append(
             PositionEstimate(
-                step.number,
-                now.gps.age_s,
-                _off_m(now, *said),
-                _off_m(now, reckoned.lon_deg, reckoned.lat_deg),
+                step.number, now.gps.age_s, _off_m(now, *said), _off_m(now, reckoned.lon_deg, reckoned.lat_deg)
             )
         )
     return tuple(found)

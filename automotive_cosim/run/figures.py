@@ -69,10 +69,9 @@ def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
     return DriveFigures(
         overspeed_m=round(overspeed(moments, until_s)[0], 3),
         min_time_to_collision_s=nearest_s(states),
-        arrival_s={
-            None: round(passed_s + end.driving.ahead.eta_s, 3),
-            EgoEnd.ARRIVED: round(passed_s, 3),
-        }.get(end.driving.end),
+        arrival_s={None: round(passed_s + end.driving.ahead.eta_s, 3), EgoEnd.ARRIVED: round(passed_s, 3)}.get(
+            end.driving.end
+        ),
         energy_wh=round((levels_pct[0] - level_pct) / 100 * BATTERY_KWH * 1000, 3),
     )
 

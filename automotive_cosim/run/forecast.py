@@ -44,10 +44,7 @@ class Tokens:
 A_STEP: Mapping[str, Tokens] = {"t3a": Tokens(1450, 100), "m3a": Tokens(1450, 100), "asurada": Tokens(1950, 100)}
 """Text of one step with its reflection, as the built-in agents send it to the stand-in (40 tasks, grid, November
 2026). Its answers are shorter than a model's, which gives reasons; 100 tokens are our estimate."""
-BY_PROMPT: Mapping[PromptLength, float] = {
-    PromptLength.STANDARD: 1.0,
-    PromptLength.SHORT: 0.75,
-}
+BY_PROMPT: Mapping[PromptLength, float] = {PromptLength.STANDARD: 1.0, PromptLength.SHORT: 0.75}
 """What another prompt makes of that (nine tasks on grid: T3A's turns have 910 and 1,250 tokens)."""
 LONGEST = 1.5
 """The longest question of a trial, of that."""

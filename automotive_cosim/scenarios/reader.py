@@ -86,12 +86,7 @@ class ScenarioFile(Described):
     """``scenario.toml``: what SUMO's own files have no word for."""
 
     start: Annotated[
-        datetime,
-        Form(
-            r"^\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d(\.\d+)?)?)?$",
-            "2026-03-10T08:30:00",
-            _local,
-        ),
+        datetime, Form(r"^\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d(\.\d+)?)?)?$", "2026-03-10T08:30:00", _local)
     ]
     """Local date and time at which the ego departs, after the warm-up."""
     time_zone: Annotated[ZoneInfo, Form(r"^[A-Za-z][A-Za-z0-9_+/-]*$", "Europe/Paris", _zone)]

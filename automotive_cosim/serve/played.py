@@ -39,11 +39,7 @@ CONDITIONS = Conditions(clock=Clock.MODEL)
 
 
 def people_plan(
-    tasks: Sequence[str],
-    people: Sequence[str],
-    seeds: Sequence[int],
-    repeats: int = 1,
-    scenario: str | None = None,
+    tasks: Sequence[str], people: Sequence[str], seeds: Sequence[int], repeats: int = 1, scenario: str | None = None
 ) -> Plan:
     """The plan in which everyone plays every task with every seed. A person's seconds pass on the road."""
     limits = Limits(steps=MOST_STEPS, hard_steps=MOST_STEPS, sim_s=MOST_S)

@@ -454,11 +454,7 @@ class _Source:
     """The source of copies of a warm simulation."""
 
     def __init__(
-        self,
-        setup: Setup,
-        timeout_s: float,
-        progress: WarmUpProgress | None,
-        alike: _Source | None,
+        self, setup: Setup, timeout_s: float, progress: WarmUpProgress | None, alike: _Source | None
     ) -> None:
         self._setup = setup
         self._timeout_s = timeout_s

@@ -13,10 +13,7 @@ from functools import cache
 from automotive_cosim.formats.shipped import shipped_table
 
 ENGLISH = "en"
-_KINDS = (
-    ("Motorway", frozenset({"motorway"})),
-    ("Main road", frozenset({"trunk", "primary"})),
-)
+_KINDS = (("Motorway", frozenset({"motorway"})), ("Main road", frozenset({"trunk", "primary"})))
 """What a street is called by the highest class of its edges, the highest first."""
 
 

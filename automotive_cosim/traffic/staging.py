@@ -15,12 +15,7 @@ from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.incident_tools import CAR_TYPE, IncidentTools
 from automotive_cosim.traffic.lookout import CROSSING
-from automotive_cosim.traffic.manoeuvres import (
-    StagedBraking,
-    StagedCutIn,
-    StagedCutOut,
-    StagedEmergency,
-)
+from automotive_cosim.traffic.manoeuvres import StagedBraking, StagedCutIn, StagedCutOut, StagedEmergency
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted_limits import Hours, TimedLimit, timed_limits
 from automotive_cosim.traffic.scripted import StagedVehicle

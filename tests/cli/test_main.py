@@ -72,8 +72,7 @@ def test_a_task_is_shown_with_its_words_and_halves(task, cli):
 
 
 @pytest.mark.parametrize(
-    ("error", "code"),
-    [(TriggerNotReachedError("the light\nwas red"), 3), (KeyboardInterrupt(), 130)],
+    ("error", "code"), [(TriggerNotReachedError("the light\nwas red"), 3), (KeyboardInterrupt(), 130)]
 )
 def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
     def fail(*_: object) -> None:

@@ -246,10 +246,7 @@ HOURS: tuple[tuple[dict[str, str], dict[str, list[tuple[bool, str]]]], ...] = (
     ),
     ({"restriction:conditional": "no_left_turn @ (weight>7.5)"}, {}),
     ({"restriction:hgv:conditional": "no_left_turn @ (07:00-19:00)"}, {}),
-    (
-        {"restriction:conditional": "no_left_turn @ (07:00-19:00)", "except": "bus"},
-        {"l": [(False, "07:00-19:00")]},
-    ),
+    ({"restriction:conditional": "no_left_turn @ (07:00-19:00)", "except": "bus"}, {"l": [(False, "07:00-19:00")]}),
     ({"restriction:conditional": "no_left_turn @ (07:00-19:00)", "except": "motorcar"}, {}),
 )
 """What a relation says; and of the turns from the south that are not always open, when they are."""
@@ -669,8 +666,7 @@ def test_who_joins_a_priority_road_yields(build: Build) -> None:
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[] if name in lost.SMALL else pytest.mark.proof) for name in lost.shown()],
+    "name", [pytest.param(name, marks=[] if name in lost.SMALL else pytest.mark.proof) for name in lost.shown()]
 )
 def test_nothing_of_the_maps_of_others_is_lost(sumo: None, name: str) -> None:
     source = lost.extracts().get(name)

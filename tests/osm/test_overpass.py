@@ -106,11 +106,7 @@ def test_a_busy_server_is_asked_again_after_the_pause_it_names(server: Server, w
     pauses: list[float] = []
     told: list[str] = []
     download(
-        server.url,
-        AREA,
-        tmp_path / "map.osm",
-        tell=lambda stage, _share: told.append(stage),
-        sleep=pauses.append,
+        server.url, AREA, tmp_path / "map.osm", tell=lambda stage, _share: told.append(stage), sleep=pauses.append
     )
     assert pauses == [7.0, 2 * FIRST_PAUSE_S, LONGEST_PAUSE_S]
     assert len(server.asked) == 4

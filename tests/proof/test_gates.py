@@ -453,13 +453,7 @@ LYON, LEEDS = (4.85, 45.75), (-1.55, 53.80)
     [
         ((), (LYON, LEEDS), (), "", ""),
         (("place",), (LYON, LEEDS), (), "", "screens and vehicle tell all"),
-        (
-            (),
-            (LYON, LEEDS),
-            ("FR", "GB"),
-            "",
-            "it would not hold: the car is driving, in FR",
-        ),
+        ((), (LYON, LEEDS), ("FR", "GB"), "", "it would not hold: the car is driving, in FR"),
         (("place",), (LYON, LEEDS), ("FR", "GB"), "", ""),
         ((), (LYON, LYON), (), "FR.horn", "Switzerland on horn: allowed, not forbidden"),
         (("place",), (LYON, LYON), (), "FR.horn", ""),

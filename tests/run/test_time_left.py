@@ -302,13 +302,7 @@ def test_what_is_known_to_be_out_of_reach_takes_no_time(monkeypatch):
 
 @pytest.mark.parametrize(
     ("left_s", "done", "said"),
-    [
-        (None, 1, ""),
-        (7.9, 1, "0:07 left"),
-        (185.0, 1, "3:05 left"),
-        (3785.0, 1, "1:03:05 left"),
-        (9.0, 2, ""),
-    ],
+    [(None, 1, ""), (7.9, 1, "0:07 left"), (185.0, 1, "3:05 left"), (3785.0, 1, "1:03:05 left"), (9.0, 2, "")],
 )
 def test_the_time_left_is_told_in_hours_minutes_and_seconds(left_s, done, said):
     assert time_left(SimpleNamespace(left_s=left_s, done=done, planned=2)) == said

@@ -106,11 +106,7 @@ def _hand_over_s(start: Start) -> int:
 
 
 def _taken_over(
-    task: Task,
-    half: str,
-    network: RoadNetwork,
-    language: Language = Language.ENGLISH,
-    make: CarMake = CarMake.HOME,
+    task: Task, half: str, network: RoadNetwork, language: Language = Language.ENGLISH, make: CarMake = CarMake.HOME
 ) -> tuple[Instance, Cockpit]:
     """The instance, and the cockpit some seconds after departure."""
     instance = draw(task, half, 0, language=language, make=make)

@@ -257,12 +257,7 @@ def warmed_up(job: AdoptionJob) -> Forked:
 
 
 def drive(
-    job: AdoptionJob,
-    warm: Forked,
-    share: float,
-    assistant: Assistant | None = None,
-    *,
-    keeps: Path | None = None,
+    job: AdoptionJob, warm: Forked, share: float, assistant: Assistant | None = None, *, keeps: Path | None = None
 ) -> tuple[ShareLog, Mapping[str, CarTrip]]:
     """Drives a share: what its assistants did, and every car's trip by its id.
 

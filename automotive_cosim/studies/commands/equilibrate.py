@@ -62,11 +62,7 @@ def equilibrate_scenario(
     best = min(found, key=lambda step: step.gap.relative)
     if as_json:
         print_json(
-            {
-                "out": str(target),
-                "kept": best.number,
-                "relative_gaps": [step.gap.relative for step in found],
-            }
+            {"out": str(target), "kept": best.number, "relative_gaps": [step.gap.relative for step in found]}
             | ({} if compared is None else compared.as_json() | {"optimum": str(optimum)})
         )
         return

@@ -24,11 +24,7 @@ IN_PYTHON = ("redraw", "step_s")
 @tells_json
 @takes(CongestionSettings, but=IN_PYTHON)
 @takes(ExecutorSettings)
-def congestion(
-    out: StudyFolder = None,
-    as_json: bool = False,
-    **settings: Any,
-) -> None:
+def congestion(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Measure the delay of a whole network before and after an intervention, in copies of the same traffic.
 
     Rerun the command to resume a stopped study.
@@ -48,11 +44,7 @@ def congestion(
 @tells_json
 @takes(DaysSettings, but=("lag",))
 @takes(ExecutorSettings)
-def days(
-    out: StudyFolder = None,
-    as_json: bool = False,
-    **settings: Any,
-) -> None:
+def days(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Advise a share of the drivers day after day until traffic settles, beside the user equilibrium.
 
     Rerun the command to resume a stopped study.
@@ -68,11 +60,7 @@ def days(
 @tells_json
 @takes(AdoptionSettings, but=("emissions", "driver", "every_s", *IN_PYTHON))
 @takes(ExecutorSettings)
-def adoption(
-    out: StudyFolder = None,
-    as_json: bool = False,
-    **settings: Any,
-) -> None:
+def adoption(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Put an assistant into a growing share of the cars of one traffic: what it does to them and to all others.
 
     Rerun the command to resume a stopped study.

@@ -10,12 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import (
-    ExecutorSettings,
-    numbers_in,
-    tell_notes,
-    words,
-)
+from automotive_cosim.cli.batches import ExecutorSettings, numbers_in, tell_notes, words
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import print_json, reads_results, tells_json
 from automotive_cosim.contracts import Json

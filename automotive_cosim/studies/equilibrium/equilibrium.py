@@ -68,10 +68,7 @@ class Assigned:
 
 
 def equilibrate(
-    folder: Path,
-    target: Path,
-    options: EquilibriumSettings,
-    tell: Callable[[AssignmentStep], None],
+    folder: Path, target: Path, options: EquilibriumSettings, tell: Callable[[AssignmentStep], None]
 ) -> tuple[AssignmentStep, ...]:
     """Writes a copy of a scenario whose demand is the best step's; returns all steps.
 
