@@ -97,7 +97,7 @@ class UIElement:
 
 
 @dataclass
-class AndroidWorldState:
+class _AndroidWorldState:
     """The result of ``get_state``."""
 
     pixels: npt.NDArray[np.uint8]
@@ -158,15 +158,15 @@ class _Environment:
         self.controller = Controller(self.perform, self.elements, screen_px)
         self._now: Observation | None = None
 
-    def get_state(self, wait_to_stabilize: bool = False) -> AndroidWorldState:
+    def get_state(self, wait_to_stabilize: bool = False) -> _AndroidWorldState:
         """The screen as it is now."""
         self.controller.flush()
         now = self.now()
         width, height = self.logical_screen_size
         pixels = np.zeros((height, width, 3), np.uint8) if now.screenshot is None else now.screenshot
-        return AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
+        return _AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
 
-    def reset(self, go_home: bool = False) -> AndroidWorldState:
+    def reset(self, go_home: bool = False) -> _AndroidWorldState:
         return self.get_state()
 
     def execute_action(self, action: Any) -> None:

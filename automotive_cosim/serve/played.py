@@ -69,7 +69,7 @@ def check_code_name(name: str) -> None:
         )
 
 
-class PlayedRows(ABC, Generic[R]):
+class _PlayedRows(ABC, Generic[R]):
     """An evaluation that grows with whatever is played. Any method may be called from any thread."""
 
     kind: type[R]
@@ -116,7 +116,7 @@ class PlayedRows(ABC, Generic[R]):
         return self._store
 
 
-class PlayedEpisodes(PlayedRows[EpisodeRow]):
+class PlayedEpisodes(_PlayedRows[EpisodeRow]):
     """Episodes of tasks that a person played."""
 
     kind = EpisodeRow
@@ -151,7 +151,7 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
         ).as_json()
 
 
-class PlayedDrives(PlayedRows[DriveTrialRow]):
+class PlayedDrives(_PlayedRows[DriveTrialRow]):
     """Drives that a person played."""
 
     kind = DriveTrialRow

@@ -68,7 +68,7 @@ pytestmark = pytest.mark.slow
 
 
 @dataclass
-class Solved:
+class _Solved:
     """A reference solution, played to its declaration."""
 
     cockpit: Cockpit
@@ -142,7 +142,7 @@ def _solved(
     *,
     by_pixels: bool = False,
     size: ScreenSize = ScreenSize.STANDARD,
-) -> Solved:
+) -> _Solved:
     start, car = instance.half.start, cockpit.copy()
     car.resize(size)
     oracle, feedback = Oracle(), Feedback(FeedbackCode.NONE, "")
@@ -178,7 +178,7 @@ def _solved(
         for request in car.drain_requests():
             car.answered(request, Answer(True, "so it is"))
     beside = counterfactual(cockpit, car.given, moments, instance.half.allowed_writes)
-    return Solved(car, moments, dict(beside))
+    return _Solved(car, moments, dict(beside))
 
 
 @dataclass
@@ -188,7 +188,7 @@ class Played:
     id: str
     instance: Instance
     cockpit: Cockpit
-    solved: Solved
+    solved: _Solved
 
 
 @pytest.fixture(scope="module")
