@@ -239,8 +239,7 @@ def measured(
         name: the first cell.
         handed_s: gets the processor time of this program from each row to the next.
         interrupted_at: numbers of rows.
-        interrupt: called once there are as many.
-    """
+        interrupt: called once there are as many."""
     clock_s: list[float] = []
 
     def tell(_progress: object) -> None:

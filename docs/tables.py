@@ -70,11 +70,7 @@ def stale(page: Path) -> list[str]:
 
 
 def printed(*arguments: str) -> str:
-    """What a command prints.
-
-    Raises:
-        RuntimeError: it fails.
-    """
+    """What a command prints. Raises RuntimeError: it fails."""
     ran = CliRunner().invoke(app, arguments, catch_exceptions=False)
     if ran.exit_code:
         raise RuntimeError(f"automotive-cosim {' '.join(arguments)} ended with code {ran.exit_code}: {ran.output}")
@@ -129,11 +125,7 @@ def _kinds() -> str:
 
 
 def _leaderboard() -> str:
-    """The tables of all bundles in the repository.
-
-    Raises:
-        RuntimeError: a bundle has a problem.
-    """
+    """The tables of all bundles in the repository. Raises RuntimeError: a bundle has a problem."""
     with TemporaryDirectory() as scratch:
         made = board(DOCS / "leaderboard" / "bundles", Path(scratch) / "board.html")
     if made.left_out:

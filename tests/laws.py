@@ -9,8 +9,7 @@ from typing import Any
 def over(cases: Iterable[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Runs a check with each case, a tuple of its first arguments or the only one; its others are fixtures.
 
-    Of cases that are found as they are asked for, all but the first wait for the test.
-    """
+    Of cases that are found as they are asked for, all but the first wait for the test."""
     found = iter(cases)
     every = [_arguments(case) for case in islice(found, 1)]
 

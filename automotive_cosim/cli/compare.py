@@ -25,8 +25,7 @@ def compare(
     """Compare two evaluations on the same episodes.
 
     Exit code 1 if success, or the score of drives, fell by more than the threshold, or something that was planned
-    was not run.
-    """
+    was not run."""
     from automotive_cosim.formats.writing import write_whole
     from automotive_cosim.report import regression
     from automotive_cosim.run.store import read_manifest

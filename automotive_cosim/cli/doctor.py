@@ -84,8 +84,7 @@ def doctor(
 ) -> None:
     """Check this machine and say what is missing and how to install it.
 
-    Exit code 1 if episodes cannot run.
-    """
+    Exit code 1 if episodes cannot run."""
     tried = list(_of_model(model)) if model else []
     findings = [*(check() for check in CHECKS), *tried]
     ready = all(each.state is not Health.MISSING for each in findings)
@@ -104,8 +103,7 @@ def _of_model(name: str) -> Iterator[Finding]:
 
     Raises:
         UserError: it is no model of this machine, or its file none that can be run.
-        SetupError: its runtime is not installed.
-    """
+        SetupError: its runtime is not installed."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.formats.files import file_sha256
     from automotive_cosim.models.base import ChatMessage

@@ -44,8 +44,7 @@ if TYPE_CHECKING:
 def evaluate(most: Most = None, tasks_from: TasksFrom = None, as_json: bool = False, **settings: Any) -> None:
     """Run agents over tasks, scenarios and seeds, or over drives.
 
-    Rerun the command to resume.
-    """
+    Rerun the command to resume."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.report.answer import agents_as_json, answer
     from automotive_cosim.report.charts import is_installed
@@ -156,8 +155,7 @@ def evaluate(most: Most = None, tasks_from: TasksFrom = None, as_json: bool = Fa
 
 def _short(found: Results, at_least: float) -> list[str]:
     """What is below a share, agent by agent: of the episodes that were run, or of the score of drives; and what was
-    not run, as everything must have been.
-    """
+    not run, as everything must have been."""
     from automotive_cosim.report.drives import grouped, whole
 
     told = []

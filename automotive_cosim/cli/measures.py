@@ -38,8 +38,7 @@ def measures(
 ) -> None:
     """Print the encounters of recorded runs with their surrogate measures of safety, as CSV or Parquet.
 
-    Those of an evaluation have a first column `trial`, with the id.
-    """
+    Those of an evaluation have a first column `trial`, with the id."""
     from automotive_cosim.exchange.needs import check_formats
     from automotive_cosim.exchange.trajectories import write_frame
     from automotive_cosim.formats.writing import write_whole

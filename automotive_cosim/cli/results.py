@@ -87,8 +87,7 @@ TrialId = Annotated[
 def attribute(folder: TrialFolder, episode: TrialId = "", as_json: bool = False) -> None:
     """Measure what each act of a stored run changed, by leaving it out, and add that to its page.
 
-    Acts that change nothing alone are also left out in pairs. Of a rerouting study, it tells of each decision.
-    """
+    Acts that change nothing alone are also left out in pairs. Of a rerouting study, it tells of each decision."""
     from automotive_cosim.formats.layout import PAGE
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.attribution import attribute as measured
@@ -134,8 +133,7 @@ def replay(
 ) -> None:
     """Replay the actions of a stored run and compare the traces.
 
-    A car of a fleet is replayed with all cars of it. Exit code 1 if the traces differ.
-    """
+    A car of a fleet is replayed with all cars of it. Exit code 1 if the traces differ."""
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.record import check_folder
     from automotive_cosim.run.rerun import rerun

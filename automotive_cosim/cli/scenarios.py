@@ -163,8 +163,7 @@ def check_scenarios(
     """Prove that scenarios are as described; exit code 1 if one is not.
 
     Each is loaded, warmed up and located. Its streets and limits are compared with those that it states, every trip
-    of the ego is driven to its end, its situations must occur, and its traffic must flow for an hour.
-    """
+    of the ego is driven to its end, its situations must occur, and its traffic must flow for an hour."""
     from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.scenarios.check import check
 
@@ -253,8 +252,7 @@ def import_scenario(
 
     The traffic is scaled down until it flows after its warm-up: for half an hour (--minutes) in steps of 1 s, then
     for ten minutes in the scenario's own. Reading the map, building the
-    network and testing the traffic take one to three minutes for a city district.
-    """
+    network and testing the traffic take one to three minutes for a city district."""
     from automotive_cosim.osm.importer import import_map, scenario_name
 
     options = filled(ImportOptions, settings)

@@ -53,8 +53,7 @@ def search(agent: AgentName, model: ModelName = "rules", as_json: bool = False, 
     """Search a space of situations and conditions for failures of an agent. Rerun the command to resume.
 
     Combinations that are spread evenly run in parallel, or on a cluster; what is learnt from them runs here, one
-    by one. After Ctrl-C the page has what was found by then.
-    """
+    by one. After Ctrl-C the page has what was found by then."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.formats.writing import write_whole
     from automotive_cosim.report.stats import distributions

@@ -131,8 +131,7 @@ def apps(as_json: bool = False) -> None:
 def events(as_json: bool = False) -> None:
     """List all that may happen on drives: kinds of events with what is due, and what can be staged.
 
-    Each kind has its look-alike, when an alert is right, and the source.
-    """
+    Each kind has its look-alike, when an alert is right, and the source."""
     from automotive_cosim.drives.events import KINDS
     from automotive_cosim.drives.staging import BRINGS, ON_REQUEST
 

@@ -75,8 +75,7 @@ def repaint(before: Screen, pixels: npt.NDArray[np.uint8], screen: Screen) -> tu
     """Draws the tree on the picture of another, (height, width, 3), RGB, only where they differ.
 
     Returns:
-        The same picture as from ``render``, and the boxes that were redrawn.
-    """
+        The same picture as from ``render``, and the boxes that were redrawn."""
     gone = [widget for widget in before.children if widget not in screen.children]
     come = [widget for widget in screen.children if widget not in before.children]
     reaches = [(widget, _reach(widget, screen)) for widget in screen.children]

@@ -272,8 +272,7 @@ def put_back(state: State, departed: State, surroundings: Surroundings, way: tim
         state: changed in place.
         departed: the same cockpit's at departure.
         surroundings: the present ones, at the departure's time of day.
-        with_air: whether air, glass, seats and tyres are put back too.
-    """
+        with_air: whether air, glass, seats and tyres are put back too."""
     for signal in (*USED, *(BODIES if with_air else ())):
         state.signals[signal] = departed.signals[signal]
     if with_air:

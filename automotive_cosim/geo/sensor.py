@@ -89,8 +89,7 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
     Args:
         drive: the drive so far in chronological order, back to the last fix; at least one instant.
         with_position: whether it may say where the car is.
-        roads: the map for dead reckoning, if the car has one.
-    """
+        roads: the map for dead reckoning, if the car has one."""
     asked = frozenset(re.findall(r"[a-z]+", text.casefold()))
     if "blue" in asked:  # the light of an emergency vehicle is no lamp
         asked -= {"light", "lights"}

@@ -213,8 +213,7 @@ def coupled(ground: Ground, right: Played) -> Wrong:
     """Turns each switch that the goal does not allow on its own, after the reference solution.
 
     All are tried, so that those which the car couples to the goal are among them. One that the car refuses or that
-    changes nothing is skipped.
-    """
+    changes nothing is skipped."""
     before, first, end = right.moments[:-1], right.moments[0], right.moments[-1]
     done = replayed(ground.episode.at_hand_over, right.given, before)
     for path in sorted(set(ACTUATORS) - ground.half.allowed_writes - may_part(ground.half)):

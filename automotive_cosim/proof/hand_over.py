@@ -143,8 +143,7 @@ class Ground:
             coarse: in steps of a second, which is quicker and other traffic.
 
         Raises:
-            TriggerNotReachedError, TrafficError: see ``SituationFinder.find``.
-        """
+            TriggerNotReachedError, TrafficError: see ``SituationFinder.find``."""
         finder = SituationFinder(
             EpisodeSpec(task.id, half_name, scenario, seed=seed, conditions=SEEING), simulations, task=task
         )

@@ -81,8 +81,7 @@ def failure_class(row: EpisodeRow, lines: Sequence[Json]) -> FailureClass:
     """The class of an episode that was judged and not solved.
 
     Args:
-        lines: its trace, from ``read_trace``.
-    """
+        lines: its trace, from ``read_trace``."""
     try:
         task: Task = CATALOGUE[row.task]
         half = bind(task.half(row.half), row.parameters or {})

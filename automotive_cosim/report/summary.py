@@ -82,8 +82,7 @@ def tables(results: Results) -> list[Table]:
     """The tables of success, the most important first; see ``findings`` for the others.
 
     Args:
-        results: with the same instances for every contestant, ``Results.shared``.
-    """
+        results: with the same instances for every contestant, ``Results.shared``."""
     made = [
         main(results),
         subsets(results),

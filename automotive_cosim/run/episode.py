@@ -66,8 +66,7 @@ def estimates(steps: Sequence[Step], moments: Sequence[Moment]) -> tuple[Positio
     """The estimates of an episode, in order, except those made while there was a fix.
 
     Args:
-        moments: from departure to its end, in order.
-    """
+        moments: from departure to its end, in order."""
     found = []
     for before, step in pairwise(steps):
         action = step.action

@@ -104,8 +104,7 @@ def forecast(jobs: Sequence[TrialSetup], workers: int, rows: Iterable[TrialRow] 
     """What the jobs that have not run yet will take.
 
     Args:
-        rows: the trials in the plan's folder so far.
-    """
+        rows: the trials in the plan's folder so far."""
     judged = [row for row in rows if row.error is None]
     done = {row.id for row in judged}
     left = [job for job in jobs if job.id not in done]

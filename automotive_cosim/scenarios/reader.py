@@ -29,8 +29,7 @@ def load(name_or_folder: str | Path) -> Scenario:
 
     Raises:
         UnknownNameError: neither a shipped name nor a folder.
-        ScenarioError: the file is missing, is not TOML, or has a wrong, extra or missing field.
-    """
+        ScenarioError: the file is missing, is not TOML, or has a wrong, extra or missing field."""
     folder = Path(name_or_folder)
     if not (folder / "scenario.toml").is_file():
         names = shipped()

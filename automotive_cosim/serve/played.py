@@ -79,8 +79,7 @@ class _PlayedRows(ABC, Generic[R]):
         """Nothing is written before the first job.
 
         Args:
-            folder: the evaluation's.
-        """
+            folder: the evaluation's."""
         self.folder = folder
         self._lock = threading.Lock()
         self._ends = ExitStack()
@@ -126,8 +125,7 @@ class PlayedEpisodes(_PlayedRows[EpisodeRow]):
 
         Args:
             folder: the evaluation's.
-            scenario: instead of the tasks' own.
-        """
+            scenario: instead of the tasks' own."""
         super().__init__(folder)
         self._scenario = scenario
 

@@ -478,11 +478,7 @@ STAGED: Mapping[type[incidents.Incident], Callable[[IncidentTools, Any], StagedI
 
 
 def staged(tools: IncidentTools, incident: incidents.Incident) -> StagedIncident:
-    """What stages an incident.
-
-    Raises:
-        ScenarioError: it does not fit the network.
-    """
+    """What stages an incident. Raises ScenarioError: it does not fit the network."""
     return STAGED[type(incident)](tools, incident)
 
 

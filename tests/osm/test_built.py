@@ -368,8 +368,7 @@ def row_of_crossings(
     tags of nodes on each crossing: ``"s"`` on the southern arm, ``"n"`` on the northern, ``"x"`` in its middle.
 
     Returns:
-        The map, and the ways of the southern arms.
-    """
+        The map, and the ways of the southern arms."""
     made, ways = Map((8.70, 48.59)), []
     for index in range(len(arms) + 2):
         for row, y in (("a", -150.0), ("s", -8.0), ("x", 0.0), ("n", 8.0), ("b", 150.0)):

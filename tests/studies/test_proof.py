@@ -48,8 +48,7 @@ def reckoned_s() -> tuple[float, float]:
 
     The ego begins with its front bumper 4.6 m into the road, at the limit. On the main road it comes up behind the
     last lorry that is on its way 100 m in, and follows it: a lorry's length, the gap at a standstill and a second's
-    headway behind. At the end of the main road the lorry turns off.
-    """
+    headway behind. At the end of the main road the lorry turns off."""
     access_s = (length_m("access") - 4.6) / SPEED_MPS
     other_s = access_s + length_m("out", "back", "exit") / SPEED_MPS
     behind_m = 7.5 + 2.5 + 1.0 * SLOW_MPS

@@ -36,8 +36,7 @@ def calibrate_scenario(
     """Fit a scenario's traffic to counts, and simulate until it matches them.
 
     Some sites are held out, to test the fit where nothing was counted. If the traffic gridlocks, the exit code is 1
-    and nothing is written.
-    """
+    and nothing is written."""
     from automotive_cosim.report.charts import require_plots
     from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.studies.calibration.calibrate import calibrate

@@ -26,8 +26,7 @@ def equilibrate_scenario(
 ) -> None:
     """Give a scenario's drivers their user-equilibrium routes, found by repeated simulation.
 
-    Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
-    """
+    Prints the relative gap of every step, as measured from the trips driven, and keeps the best step."""
     from automotive_cosim.scenarios.variant import check_target
     from automotive_cosim.studies.equilibrium.equilibrium import AssignmentStep, equilibrate
     from automotive_cosim.studies.equilibrium.optimum import OptimumStep, compare

@@ -27,8 +27,7 @@ IN_PYTHON = ("redraw", "step_s")
 def congestion(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Measure the delay of a whole network before and after an intervention, in copies of the same traffic.
 
-    Rerun the command to resume a stopped study.
-    """
+    Rerun the command to resume a stopped study."""
     from automotive_cosim.studies.congestion.plan import CongestionPlan
     from automotive_cosim.studies.congestion.seed import CONGESTION
 
@@ -47,8 +46,7 @@ def congestion(out: StudyFolder = None, as_json: bool = False, **settings: Any) 
 def days(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Advise a share of the drivers day after day until traffic settles, beside the user equilibrium.
 
-    Rerun the command to resume a stopped study.
-    """
+    Rerun the command to resume a stopped study."""
     from automotive_cosim.studies.days.days import DAYS, DaysPlan
 
     plan = filled(DaysPlan, settings)
@@ -63,8 +61,7 @@ def days(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> Non
 def adoption(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Put an assistant into a growing share of the cars of one traffic: what it does to them and to all others.
 
-    Rerun the command to resume a stopped study.
-    """
+    Rerun the command to resume a stopped study."""
     from automotive_cosim.studies.adoption.adoption import ADOPTION, AdoptionPlan
 
     plan = filled(AdoptionPlan, settings)

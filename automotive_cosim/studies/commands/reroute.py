@@ -85,8 +85,7 @@ def reroute(
 ) -> None:
     """Fork the running traffic at every decision to reroute and drive both routes.
 
-    Rerun the command to resume a stopped study.
-    """
+    Rerun the command to resume a stopped study."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.scenarios import shipped
     from automotive_cosim.studies.reroute.networks import folder_name

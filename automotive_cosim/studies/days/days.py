@@ -266,8 +266,7 @@ class DaysRow(JobRow):
         """The mean of a figure over the last ``WEEK`` days; None if it is not known.
 
         Of the user equilibrium, that of the day with the smallest gap, and of the system optimum, that of the day
-        with the least mean time, as the searches do not approach them evenly.
-        """
+        with the least mean time, as the searches do not approach them evenly."""
         days = self.days[-WEEK:]
         if self.share is None and self.days:
             days = (min(self.days, key=lambda day: day.mean_s if self.optimum else day.relative_gap),)

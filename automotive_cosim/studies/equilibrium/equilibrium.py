@@ -79,8 +79,7 @@ def equilibrate(
     Raises:
         UserError: the target exists, or the demand has stops or persons.
         ScenarioError: it is no scenario, or SUMO refuses it.
-        SetupError: eclipse-sumo is not installed.
-    """
+        SetupError: eclipse-sumo is not installed."""
     with variant.new_folder(target) as draft:
         scenario = opened(folder, options)
         configuration = read_configuration(scenario.config)
