@@ -35,7 +35,7 @@ class Reckonable(Protocol):
 
     @property
     def driving(self) -> DrivingState:
-        """Source of compass and speedometer, and of whether the car is in a tunnel."""
+        """Source of compass and speedometer, of the road ahead and of whether the car is in a tunnel."""
         ...
 
     @property
