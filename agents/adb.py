@@ -56,8 +56,7 @@ class Controller:
         Args:
             perform: performs an action and waits until its time has passed.
             elements: those on the screen now.
-            screen_px: width and height.
-        """
+            screen_px: width and height."""
         self._perform = perform
         self._elements = elements
         self.device_screen_size = screen_px

@@ -97,7 +97,7 @@ class UIElement:
 
 
 @dataclass
-class AndroidWorldState:
+class _AndroidWorldState:
     """The result of ``get_state``."""
 
     pixels: npt.NDArray[np.uint8]
@@ -158,15 +158,15 @@ class _Environment:
         self.controller = Controller(self.perform, self.elements, screen_px)
         self._now: Observation | None = None
 
-    def get_state(self, wait_to_stabilize: bool = False) -> AndroidWorldState:
+    def get_state(self, wait_to_stabilize: bool = False) -> _AndroidWorldState:
         """The screen as it is now."""
         self.controller.flush()
         now = self.now()
         width, height = self.logical_screen_size
         pixels = np.zeros((height, width, 3), np.uint8) if now.screenshot is None else now.screenshot
-        return AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
+        return _AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
 
-    def reset(self, go_home: bool = False) -> AndroidWorldState:
+    def reset(self, go_home: bool = False) -> _AndroidWorldState:
         return self.get_state()
 
     def execute_action(self, action: Any) -> None:
@@ -174,8 +174,7 @@ class _Environment:
 
         Raises:
             ActionError: there is no such action here.
-            ValueError: it has no target.
-        """
+            ValueError: it has no target."""
         self.controller.flush()
         known = translated(action, self.elements(), self.controller.last, self.logical_screen_size)
         if known.action_type is ActionType.ANSWER:
@@ -223,8 +222,7 @@ class AndroidWorldAgent:
         """Takes the agent's class or factory.
 
         Args:
-            make: called with an environment, e.g. the agent's class; returns an object with ``step(goal)``.
-        """
+            make: called with an environment, e.g. the agent's class; returns an object with ``step(goal)``."""
         self._make = make
         self.name = getattr(make, "__name__", "androidworld")
         self._env: _Environment | None = None
@@ -318,8 +316,7 @@ def translated(
 
     Raises:
         ActionError: there is no such action here.
-        ValueError: a touch has no target.
-    """
+        ValueError: a touch has no target."""
     names = {field.name for field in fields(Action)} - {"action_type"}
     given = {name: value for name in names if (value := getattr(action, name, None)) is not None}
     kind = str(getattr(action, "action_type", ""))

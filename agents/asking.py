@@ -34,8 +34,7 @@ class Asking:
 
         Raises:
             OutOfBudgetError: the episode's tokens or seconds are spent.
-            ModelError: the model does not answer.
-        """
+            ModelError: the model does not answer."""
         return self.converse([ChatMessage("user", text, tuple(pictures), form=form)])
 
     def converse(self, messages: Sequence[ChatMessage]) -> tuple[ModelReply, str]:

@@ -40,8 +40,7 @@ class Agent(Protocol):
         Raises:
             ActionError: its model's answer could not be read; the step still counts.
             OutOfBudgetError: its budget is spent; the episode ends and is judged as it is.
-            ModelError: its model could not be reached; the episode says nothing about it.
-        """
+            ModelError: its model could not be reached; the episode says nothing about it."""
         ...
 
 
@@ -118,6 +117,5 @@ class Privileged(Protocol):
 
         Args:
             drawn: the boxes of the widgets in the present picture, for a reference that works by pixels.
-            branch: gives a copy of the episode as it is, for a reference that tries things; it closes the copy.
-        """
+            branch: gives a copy of the episode as it is, for a reference that tries things; it closes the copy."""
         ...

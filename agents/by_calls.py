@@ -137,8 +137,7 @@ class OracleByCalls:
     """The oracle without a screen: plays the reference solution as calls, each as soon as it can.
 
     What has to happen at a certain time it calls when the reference solution does: where a copy of the episode
-    shows that hurrying loses.
-    """
+    shows that hurrying loses."""
 
     name = "oracle"
     model = "none"
@@ -162,8 +161,7 @@ class OracleByCalls:
 
         Raises:
             ActionError: it was not told the task.
-            UntranslatableError: no function gives one of the reference solution's commands.
-        """
+            UntranslatableError: no function gives one of the reference solution's commands."""
         if self._player is None:
             if self._branch is None:
                 raise ActionError("the oracle has to be told the task before it acts")

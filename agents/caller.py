@@ -59,8 +59,7 @@ class Caller:
 
         Args:
             chat_model: the model to ask, which knows the functions (``tools``) by its protocol.
-            settings: the conditions, what to take away, the budget.
-        """
+            settings: the conditions, what to take away, the budget."""
         wanted = AgentProfile(self.name, ALL, frozenset(UNCALLED), reflects=False)
         self._profile = wanted.under(settings)
         self._asking = Asking(chat_model, settings)
@@ -93,8 +92,7 @@ class Caller:
         Raises:
             ActionError: the answer has no call, or one that does not fit its function.
             OutOfBudgetError: the episode's tokens or seconds are spent.
-            ModelError: the model does not answer.
-        """
+            ModelError: the model does not answer."""
         self.stages.clear()
         self._is_told = self._waiting is not None
         if self._waiting is not None:

@@ -76,8 +76,7 @@ def end_all(find: Callable[[], Iterable[int]], grace_s: float = 0.0) -> None:
 
     Args:
         find: the children to end; called again and again, because they may start others meanwhile.
-        grace_s: wall seconds in which they may end by themselves.
-    """
+        grace_s: wall seconds in which they may end by themselves."""
     gone: set[int] = set()
     began_s = time.monotonic()
     while (passed_s := time.monotonic() - began_s) < grace_s + SWEEP_S:
@@ -99,8 +98,7 @@ def remove(folder: Path) -> None:
     """Removes a folder; what takes long goes on beside what this process does next.
 
     It may be nested deeper than Python recurses and than a path is long: each folder is moved to the top before it
-    is emptied.
-    """
+    is emptied."""
     if not _is_removed(folder, REMOVE_S):
         threading.Thread(target=_is_removed, args=(folder, LATER_S), daemon=True).start()
 

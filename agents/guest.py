@@ -61,8 +61,7 @@ class Guest:
         Raises:
             ActionError: the agent raised, or returned no action. Only this program's own model client reports a
                 model's error, so a ``ModelError`` is a fault like any other.
-            OutOfBudgetError: it gives up.
-        """
+            OutOfBudgetError: it gives up."""
         try:
             with aside():
                 returned = self._agent.act(observation)
@@ -95,8 +94,7 @@ def load(spec: str) -> Agent:
 def classes_in(module_name: str) -> tuple[str, ...]:
     """The agents in a module of the working folder, as ``package.module:Class``, for who forgot the class.
 
-    It is read and not imported. Nothing if there is no such file, or it is not Python.
-    """
+    It is read and not imported. Nothing if there is no such file, or it is not Python."""
     module_name = module_name.removesuffix(".py")
     try:
         code = ast.parse(Path(*module_name.split(".")).with_suffix(".py").read_bytes())

@@ -45,8 +45,7 @@ class Human:
 
         Args:
             ask: reads a line; raises ``EOFError`` at the end of the input.
-            out: where to print the screen; by default standard error, which never carries results.
-        """
+            out: where to print the screen; by default standard error, which never carries results."""
         self._ask = ask
         self._out = out or sys.stderr
         self._heard = 0

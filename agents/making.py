@@ -29,8 +29,7 @@ def make_agent(
     Raises:
         UnknownNameError: no agent or model of that name.
         UserError: a class of your own is not an agent, or a memory cannot be used.
-        SetupError: the model's package, key or address is missing, or no agent answers at an address.
-    """
+        SetupError: the model's package, key or address is missing, or no agent answers at an address."""
     if is_remote(name):
         from automotive_cosim.agents.a2a import A2AAgent
 
@@ -76,8 +75,7 @@ def model_of(
         settings: of the agent; one that calls functions tells its model which.
 
     Raises:
-        as ``make_agent``.
-    """
+        as ``make_agent``."""
     if name not in MODELLED:
         return None
     if name == "native":

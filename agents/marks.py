@@ -43,8 +43,7 @@ def marks(screenshot: npt.NDArray[np.uint8], elements: Sequence[Element]) -> tup
     """The marks of a screenshot, (height, width, 3).
 
     A number stands at the first place around its box that is free. On a crowded screen it stands inside the box
-    where that is free, else where it hides least.
-    """
+    where that is free, else where it hides least."""
     height, width, _ = screenshot.shape
     ink = Leaps(screenshot)
     found: list[Mark] = []

@@ -43,8 +43,7 @@ class _Turn:
 class ModelAgent:
     """Asks its model what to do now and, after an action that failed, what follows from that.
 
-    ``stages`` records the last turn.
-    """
+    ``stages`` records the last turn."""
 
     def __init__(
         self,
@@ -98,8 +97,7 @@ class ModelAgent:
         Raises:
             ActionError: the answer has no action, a malformed one, or one that this agent does not have.
             OutOfBudgetError: the episode's tokens or seconds are spent.
-            ModelError: the model does not answer.
-        """
+            ModelError: the model does not answer."""
         self.stages.clear()
         if self._last is None:
             self._begin(observation)

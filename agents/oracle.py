@@ -10,15 +10,7 @@ from automotive_cosim.cockpit.actions import point
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.cockpit.touchscreen import OPPOSITE
-from automotive_cosim.contracts import (
-    Action,
-    ActionType,
-    Direction,
-    Element,
-    FeedbackCode,
-    GoalStatus,
-    Observation,
-)
+from automotive_cosim.contracts import Action, ActionType, Direction, Element, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.contracts.given import See
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.episode.episode import Episode
@@ -54,8 +46,7 @@ class Oracle:
         """Nothing is known yet.
 
         Args:
-            see: how it sees the screen; it has the picture drawn only where it gets no list.
-        """
+            see: how it sees the screen; it has the picture drawn only where it gets no list."""
         self.channels = frozenset({Channel.SCREENSHOT if see is See.PICTURE else Channel.ELEMENTS})
         self._moves: deque[Move] = deque()
         self._end = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
@@ -89,8 +80,7 @@ class Oracle:
             moves: another of its solutions, or other moves.
             declares: what to declare then; None for what is right.
             drawn: the boxes of the widgets in the present picture, with the texts that it shows. An agent that sees
-                the picture alone finds its way by them, and acts by points.
-        """
+                the picture alone finds its way by them, and acts by points."""
         self._drawn = drawn
         self._moves.clear()
         for move in instance.moves if moves is None else moves:

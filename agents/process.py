@@ -138,8 +138,7 @@ class _AgentServer:
             grace_s: time in which it may still end by itself.
 
         Returns:
-            How it ended by itself; empty if it did not.
-        """
+            How it ended by itself; empty if it did not."""
         if self._folders.pop(agent, None) is None:
             return ""
         how, end_s = "", time.monotonic() + grace_s

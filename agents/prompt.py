@@ -16,15 +16,7 @@ from automotive_cosim.agents import prompt_parts
 from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.settings import AgentProfile
 from automotive_cosim.cockpit.actions import FIELDS, to_json
-from automotive_cosim.contracts import (
-    Action,
-    ActionType,
-    Element,
-    GpsFix,
-    Json,
-    Observation,
-    VehicleState,
-)
+from automotive_cosim.contracts import Action, ActionType, Element, GpsFix, Json, Observation, VehicleState
 from automotive_cosim.contracts.given import Interface, PromptLength
 from automotive_cosim.interface.functions import signature
 from automotive_cosim.interface.observe import Channel
@@ -41,8 +33,7 @@ def fill(name: str, slots: Mapping[str, str | None]) -> str:
 
     Args:
         name: of the file, without its suffix.
-        slots: the value of each slot; None omits its section.
-    """
+        slots: the value of each slot; None omits its section."""
     text = files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8")
     sections = re.split(r"^(?=## )", text, flags=re.MULTILINE)
     kept = [section for section in sections if all(slots[slot] is not None for slot in _slots(section))]
@@ -63,8 +54,7 @@ def turn(
         history: one line per step so far.
         plan: what it intended to do next when it last acted.
         recalled: what it remembers of earlier episodes, one line each.
-        pictures: whether the screen is sent along, and the marked screen if there is a list.
-    """
+        pictures: whether the screen is sent along, and the marked screen if there is a list."""
     given = profile.channels
     stays, now = _vehicle(observation.vehicle)
     is_listed, is_told = Channel.ELEMENTS in given, Channel.CONTEXT in given
@@ -114,8 +104,7 @@ def situation(
 
     Args:
         is_spoken: whether it has what the driver said.
-        is_resulting: whether it has the last result; without it, the time that has passed alone.
-    """
+        is_resulting: whether it has the last result; without it, the time that has passed alone."""
     given = profile.channels
     stays, now = _vehicle(observation.vehicle)
     is_listed = Channel.ELEMENTS in given
@@ -208,8 +197,7 @@ def look_back(
         before: what was seen when it was chosen.
         action: the action; None for an answer that could not be read.
         after: what is seen now.
-        pictures: whether a picture of before and one of after come with it.
-    """
+        pictures: whether a picture of before and one of after come with it."""
     lists = (before.elements, after.elements)
     slots = {
         "goal": driver_words(after),
@@ -227,8 +215,7 @@ def step(number: int, action: Action | None, seen: Observation, after: Observati
 
     Args:
         action: the action; None for an answer that could not be read.
-        lesson: what the agent learnt from it.
-    """
+        lesson: what the agent learnt from it."""
     learnt = f"; {one_line(lesson)}" if lesson else ""
     came = f"{after.feedback.code} {one_line(after.feedback.text)}".rstrip()
     return f"Step {number} at {seen.time_s:.0f} s: {action_words(action, seen)} -> {came}{learnt}"

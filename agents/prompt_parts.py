@@ -139,8 +139,7 @@ def context(text: str, words: str, told: Collection[str] = ()) -> str:
     the driver's words are only named.
 
     Args:
-        told: how lines begin that say what the prompt says elsewhere.
-    """
+        told: how lines begin that say what the prompt says elsewhere."""
     kept: list[str] = []
     here: list[str] = []
     further: list[str] = []

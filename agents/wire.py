@@ -45,8 +45,7 @@ class Wire:
 
         Raises:
             GoneError: the other side is gone.
-            TimeoutError: it did not take the whole message in time.
-        """
+            TimeoutError: it did not take the whole message in time."""
         self.send(packed(message), within_s)
 
     def send(self, message: bytes, within_s: float | None = None) -> None:
@@ -54,8 +53,7 @@ class Wire:
 
         Raises:
             GoneError: the other side is gone.
-            TimeoutError: it did not take the whole message in time.
-        """
+            TimeoutError: it did not take the whole message in time."""
         self._socket.settimeout(within_s)
         try:
             self._socket.sendall(_LENGTH.pack(len(message)) + message)
@@ -78,8 +76,7 @@ class Wire:
         Raises:
             GoneError: the other side is gone.
             TimeoutError: the message was not complete in time.
-            ValueError: it is too long, nested too deeply, or not a JSON object.
-        """
+            ValueError: it is too long, nested too deeply, or not a JSON object."""
         return _json(bytes(self._receive(time.monotonic() + within_s, LONGEST_BYTES)))
 
     def send_socket(self, connection: socket.socket) -> None:

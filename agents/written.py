@@ -66,8 +66,7 @@ def written(text: str, schemas: Mapping[str, Json]) -> list[WrittenCall]:
 
     Args:
         schemas: of the parameters, by function; texts in tags become what they say. A call alone, without any mark,
-            is one only of these functions.
-    """
+            is one only of these functions."""
     text = text.replace("\uff5cDSML\uff5c", "")
     calls: list[WrittenCall] = []
     read = 0

@@ -59,8 +59,7 @@ class UnknownNameError(UserError):
         name: the name that was given.
         known: the names that exist.
         hint: how to list them, e.g. ``"automotive-cosim scenarios list"``.
-        whole: whether all of up to ``LISTED`` are named although one is close.
-    """
+        whole: whether all of up to ``LISTED`` are named although one is close."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "", *, whole: bool = False) -> None:
         choices = sorted(known)
@@ -137,8 +136,7 @@ def install_hint(extra: str = "") -> str:
     """The command that installs an extra: from the checkout that this runs from, else from an index.
 
     Args:
-        extra: its name in ``pyproject.toml``; empty for the package alone.
-    """
+        extra: its name in ``pyproject.toml``; empty for the package alone."""
     if (CHECKOUT / "constraints.txt").is_file():
         return "pip install -c constraints.txt -e " + (f"'.[{extra}]'" if extra else ".")
     return "pip install " + (f"'automotive-cosim[{extra}]'" if extra else "automotive-cosim")

@@ -430,8 +430,7 @@ def charges(first: float, full_at: float):
 def imitate(model, lessons: Lessons, own: Lessons | None, epochs: int) -> None:
     """Fits the policy to what the watcher would do, and the value to what the policy earned on its own drives.
 
-    Alerts count more, as there is one to forty waits.
-    """
+    Alerts count more, as there is one to forty waits."""
     import torch
 
     seen, wanted = torch.as_tensor(lessons.seen), torch.as_tensor(lessons.wanted)

@@ -239,8 +239,7 @@ def measured(
         name: the first cell.
         handed_s: gets the processor time of this program from each row to the next.
         interrupted_at: numbers of rows.
-        interrupt: called once there are as many.
-    """
+        interrupt: called once there are as many."""
     clock_s: list[float] = []
 
     def tell(_progress: object) -> None:
@@ -310,14 +309,7 @@ def main() -> None:
     given = parser.parse_args()
     print(f"load {os.getloadavg()[0]:.1f}")
     if given.streets:
-        columns = [
-            "edges",
-            "vehicles",
-            "warm-up",
-            "fork",
-            "decisions",
-            "a decision",
-        ]
+        columns = ["edges", "vehicles", "warm-up", "fork", "decisions", "a decision"]
         print(f"| {' | '.join(columns)} |\n|{'---:|' * len(columns)}")
         for streets in given.streets:
             print(f"| {on_network(streets, given.trips)} |", flush=True)

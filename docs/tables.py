@@ -70,11 +70,7 @@ def stale(page: Path) -> list[str]:
 
 
 def printed(*arguments: str) -> str:
-    """What a command prints.
-
-    Raises:
-        RuntimeError: it fails.
-    """
+    """What a command prints. Raises RuntimeError: it fails."""
     ran = CliRunner().invoke(app, arguments, catch_exceptions=False)
     if ran.exit_code:
         raise RuntimeError(f"automotive-cosim {' '.join(arguments)} ended with code {ran.exit_code}: {ran.output}")
@@ -129,11 +125,7 @@ def _kinds() -> str:
 
 
 def _leaderboard() -> str:
-    """The tables of all bundles in the repository.
-
-    Raises:
-        RuntimeError: a bundle has a problem.
-    """
+    """The tables of all bundles in the repository. Raises RuntimeError: a bundle has a problem."""
     with TemporaryDirectory() as scratch:
         made = board(DOCS / "leaderboard" / "bundles", Path(scratch) / "board.html")
     if made.left_out:
@@ -250,8 +242,7 @@ MADE: Mapping[str, Callable[[], str]] = {
         ("file", "read by", "bound"), [(each.what, f"`{each.where}`", each.bound) for each in READERS]
     ),
     "settings": lambda: _table(
-        ("factor of drives", "value"),
-        [(f"`{name}`", about) for name, about in field_docs(DriveSettings).items()],
+        ("factor of drives", "value"), [(f"`{name}`", about) for name, about in field_docs(DriveSettings).items()]
     ),
     "situations": lambda: _table(
         ("scenario", "what happens"), [(f"`{name}`", read_space(path).about) for name, path in LIBRARY.items()]

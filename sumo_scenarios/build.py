@@ -36,8 +36,7 @@ def compile_net(name: str) -> bytes:
     Raises:
         UnknownNameError: no scenario of that name has plain XML.
         ScenarioError: netconvert refuses it; the text is netconvert's.
-        SetupError: eclipse-sumo is not installed.
-    """
+        SetupError: eclipse-sumo is not installed."""
     if name not in buildable():
         raise UnknownNameError("scenario with plain XML", name, buildable())
     with tempfile.TemporaryDirectory() as folder:

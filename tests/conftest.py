@@ -260,8 +260,7 @@ def program() -> Iterator[Callable[..., subprocess.Popen[str]]]:
     """Starts programs, each in a session of its own, that Ctrl-C reaches however the tests were started.
 
     Children of ``nohup``, of a shell's ``&`` and of some CI services inherit that SIGINT is ignored; these inherit
-    ``sigint`` instead. None outlives its test, even one that a timeout ended.
-    """
+    ``sigint`` instead. None outlives its test, even one that a timeout ended."""
     started: list[subprocess.Popen[str]] = []
 
     def start(*words: object, sigint: Any = signal.default_int_handler, **named: Any) -> subprocess.Popen[str]:

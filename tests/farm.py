@@ -1,7 +1,5 @@
 """Warm traffic of the shipped scenarios, once for all workers of a test run: each gets exact copies by fork."""
 
-from __future__ import annotations
-
 import os
 import socket
 import tempfile
@@ -80,11 +78,7 @@ def has(setup: Setup) -> bool:
 
 
 def copied(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
-    """What ``RemoteProcess.start`` does, by a copy from the farm.
-
-    Raises:
-        CosimError: as it does.
-    """
+    """What ``RemoteProcess.start`` does, by a copy from the farm. Raises CosimError: as it does."""
     with socket.socket(socket.AF_UNIX) as farm:
         farm.connect(os.environ[ADDRESS])
         channel = MessageChannel(farm)

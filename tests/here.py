@@ -1,7 +1,5 @@
 """Evaluations without workers: what is tested is not the processes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any

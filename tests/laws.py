@@ -1,7 +1,5 @@
 """Laws over many cases. A law is one test, not hundreds, and lists the cases that break it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from inspect import Signature, signature
 from itertools import islice
@@ -11,8 +9,7 @@ from typing import Any
 def over(cases: Iterable[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Runs a check with each case, a tuple of its first arguments or the only one; its others are fixtures.
 
-    Of cases that are found as they are asked for, all but the first wait for the test.
-    """
+    Of cases that are found as they are asked for, all but the first wait for the test."""
     found = iter(cases)
     every = [_arguments(case) for case in islice(found, 1)]
 

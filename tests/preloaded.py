@@ -3,8 +3,6 @@
 SUMO is started hundreds of times by the tests. Those that are about the process start it as programs do.
 """
 
-from __future__ import annotations
-
 import atexit
 import json
 import os

@@ -1,7 +1,5 @@
 """A scripted agent that speaks A2A, for tests: it answers what a function says, and keeps what it heard."""
 
-from __future__ import annotations
-
 import json
 import threading
 from collections.abc import Callable, Iterator

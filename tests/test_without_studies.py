@@ -1,7 +1,5 @@
 """The studies are a wing of their own: without their folder, the package imports, has its commands and runs."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

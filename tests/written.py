@@ -1,7 +1,5 @@
 """Tasks for tests, as a user would write them in Python."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from automotive_cosim.tasking.checks import Check

@@ -56,8 +56,7 @@ def opening(system: str, words: str, tools: Iterable[Function]) -> list[Any]:
 
     Args:
         words: what the driver says, and nothing else: some agents go by its words.
-        tools: what the agent can call.
-    """
+        tools: what the agent can call."""
     return [f"System: {system}\n\nUser: {words}", {"tools": [as_openai(each) for each in tools]}]
 
 
@@ -163,8 +162,7 @@ class A2AAgent:
 
     Words without a call are spoken to the driver (``ask_driver``), as the contract has it. Before the agent's
     declaration takes effect, it is sent its result like that of any call: agents report their metrics with their
-    last words.
-    """
+    last words."""
 
     def __init__(self, name: str, settings: AgentSettings) -> None:
         """Reads the agent's card.
@@ -175,8 +173,7 @@ class A2AAgent:
 
         Raises:
             UserError: the name has no address.
-            SetupError: no such agent answers there, or ``a2a-sdk`` is missing.
-        """
+            SetupError: no such agent answers there, or ``a2a-sdk`` is missing."""
         self.name = name
         self.model = "none"
         self._settings = settings
@@ -211,8 +208,7 @@ class A2AAgent:
         Raises:
             ActionError: the answer has neither words nor a call, or one that does not fit its function.
             OutOfBudgetError: the episode's tokens or seconds are spent.
-            AgentError: the agent does not answer, or not in its protocol.
-        """
+            AgentError: the agent does not answer, or not in its protocol."""
         self.stages.clear()
         began_s = time.monotonic()
         if self._waiting is not None:

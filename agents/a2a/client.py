@@ -64,8 +64,7 @@ class AgentLine:
 
         Raises:
             UserError: the address is none.
-            SetupError: nothing answers there, or no agent that speaks A2A over JSON-RPC.
-        """
+            SetupError: nothing answers there, or no agent that speaks A2A over JSON-RPC."""
         self._address = _checked(address)
         self._card = self._read_card()
         self.begin()
@@ -126,8 +125,7 @@ class AgentLine:
         """What a task says that it had not said before, once, with the metadata.
 
         Artifacts are its result, and a status message tells only what they do not. An open task has those of its
-        earlier answers, too.
-        """
+        earlier answers, too."""
         metadata, artifacts, status = _metadata(task), list[Any](), list[Any]()
         for each in task.artifacts:
             parts, before = _plain(each.parts), self._heard.get(each.artifact_id, ())

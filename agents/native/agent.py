@@ -32,8 +32,7 @@ class NativeAgent:
     """Asks its model once per answer, which may hold several actions; each costs a step.
 
     The model gets the driver's words, what it did so far and the picture. The elements stay with the agent, as in a
-    phone: they say which field has the focus and which list lies under a point.
-    """
+    phone: they say which field has the focus and which list lies under a point."""
 
     name = "native"
     channels = frozenset({Channel.SCREENSHOT, Channel.ELEMENTS})
@@ -68,8 +67,7 @@ class NativeAgent:
         Raises:
             ActionError: the answer cannot be read, or asks for what the car does not have.
             OutOfBudgetError: the episode's tokens or seconds are spent.
-            ModelError: the model does not answer.
-        """
+            ModelError: the model does not answer."""
         self.stages.clear()
         if self._form.stops_at_failure and observation.feedback.code in FAILED:
             self._left.clear()

@@ -253,8 +253,7 @@ def chosen(model: str) -> tuple[str, Format]:
 
     Raises:
         UserError: it has none.
-        UnknownNameError: there is no such format.
-    """
+        UnknownNameError: there is no such format."""
     whole, _, query = model.partition("?")
     settings = parse_qsl(query, keep_blank_values=True)
     names = [value for name, value in settings if name == "format"]

@@ -51,8 +51,7 @@ class Resized:
     """Pixels of the picture after the model's own processor has resized it.
 
     Both sides become multiples of ``factor``, and the area is kept between two bounds ("smart resize", which
-    Qwen2-VL's image processor introduced).
-    """
+    Qwen2-VL's image processor introduced)."""
 
     factor: int
     least_px: int

@@ -193,8 +193,7 @@ def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
 def call_for(verbs: Mapping[str, Verb], action: Action, screen: GuiScreen) -> GuiCall | None:
     """The call that asks for an action; None if the format has no word for it.
 
-    A text is typed into the field that has the focus, so its target is not said.
-    """
+    A text is typed into the field that has the focus, so its target is not said."""
     asked = ((name, verb) for name, verb in verbs.items() if not verb.unasked)
     return next((call for name, verb in asked if (call := _call(name, verb, action, screen))), None)
 

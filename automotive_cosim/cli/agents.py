@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 
 app = typer.Typer(help="The agents that can operate the cockpit.", invoke_without_command=True)
 
@@ -12,11 +12,12 @@ app = typer.Typer(help="The agents that can operate the cockpit.", invoke_withou
 @app.callback()
 def _default(context: typer.Context) -> None:
     if context.invoked_subcommand is None:
-        list_agents()
+        list_agents(context=context)
 
 
 @app.command("list")
-def list_agents(as_json: AsJson = False) -> None:
+@tells_json
+def list_agents(as_json: bool = False) -> None:
     """List the agents and the models behind them."""
     from automotive_cosim.agents import ABOUT, AGENTS
     from automotive_cosim.models import MODELS
@@ -32,7 +33,8 @@ def list_agents(as_json: AsJson = False) -> None:
 
 
 @app.command("formats")
-def list_formats(as_json: AsJson = False) -> None:
+@tells_json
+def list_formats(as_json: bool = False) -> None:
     """List the native formats: their models, coordinates and words, with version, date and source of the words."""
     from automotive_cosim.agents import FORMATS
 
@@ -47,7 +49,8 @@ def list_formats(as_json: AsJson = False) -> None:
 
 
 @app.command()
-def show(name: str, as_json: AsJson = False) -> None:
+@tells_json
+def show(name: str, as_json: bool = False) -> None:
     """Show an agent's inputs and actions and, if it uses a model, its prompt."""
     from importlib.resources import files
 

@@ -52,8 +52,7 @@ class ExecutorSettings:
 
         Raises:
             UnknownNameError: there is no such executor.
-            SetupError: ray is not installed.
-        """
+            SetupError: ray is not installed."""
         from automotive_cosim.run.processes import Processes
 
         if self.executor == "processes":
@@ -81,8 +80,7 @@ class ProgressView(Generic[R]):
         Args:
             what: is being run, in the plural.
             said: gives the text next to its count.
-            expected: seconds that it was said to take before it started; None if it was not.
-        """
+            expected: seconds that it was said to take before it started; None if it was not."""
         from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
         from rich.progress import Progress as Bar
 

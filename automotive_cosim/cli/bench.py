@@ -9,9 +9,10 @@ import typer
 from annotated_types import Ge, Le
 
 from automotive_cosim.cli.derived import number_in
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 
 
+@tells_json
 def bench(
     scenario: Annotated[
         str, typer.Option(help="A scenario's name or folder, any .sumocfg or .net.xml(.gz).")
@@ -24,7 +25,7 @@ def bench(
             parser=partial(number_in, int, (Ge(100), Le(10**6))),
         ),
     ] = 2000,
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Time a libsumo loop and the environment side by side; also resets and memory."""
     from automotive_cosim.run.bench import measure

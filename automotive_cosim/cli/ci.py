@@ -28,8 +28,7 @@ def init(
 ) -> None:
     """Write a script and a GitHub workflow that compare every pull request's agents with those of its base.
 
-    Nothing is overwritten. The script needs nothing of GitHub's: any runner can call it.
-    """
+    Nothing is overwritten. The script needs nothing of GitHub's: any runner can call it."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.formats.writing import make_folder, write_whole
     from automotive_cosim.run.plan import make_plan, read_plan

@@ -8,24 +8,24 @@ from typing import Annotated, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json, reads_results
+from automotive_cosim.cli.options import print_json, reads_results, tells_json
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.settings import CompareSettings
 
 
+@tells_json
 @reads_results
 @takes(CompareSettings)
 def compare(
     before: Annotated[Path, typer.Argument(help="Results folder of `eval` before the change.", show_default=False)],
     after: Annotated[Path, typer.Argument(help="Results folder of `eval` after the change.", show_default=False)],
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Compare two evaluations on the same episodes.
 
     Exit code 1 if success, or the score of drives, fell by more than the threshold, or something that was planned
-    was not run.
-    """
+    was not run."""
     from automotive_cosim.formats.writing import write_whole
     from automotive_cosim.report import regression
     from automotive_cosim.run.store import read_manifest

@@ -27,8 +27,7 @@ def takes_conditions(*, lists: bool = False) -> Callable[[F], F]:
     """Gives a command an option for each condition; it gets what was given as ``**settings``.
 
     Args:
-        lists: whether an option takes several values, separated by commas.
-    """
+        lists: whether an option takes several values, separated by commas."""
     return with_options(_parameter(each, lists=lists) for each in TABLE)
 
 

@@ -13,7 +13,7 @@ import typer
 from annotated_types import Ge, Le
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import Option
 
@@ -47,6 +47,7 @@ class _ContextSettings:
     """OSM highway value, e.g. motorway, primary, residential."""
 
 
+@tells_json
 @takes(_ContextSettings)
 def context(
     lat: Annotated[float, typer.Argument(help="Degrees north; negative is south.")],
@@ -54,7 +55,7 @@ def context(
     rules: Annotated[
         list[Path] | None, typer.Option(help="Folder with your own rule files, which override the shipped ones.")
     ] = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Print the traffic law, sky and climate at a place."""

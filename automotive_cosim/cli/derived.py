@@ -40,8 +40,7 @@ def takes(kind: type, *, only: Collection[str] = (), but: Collection[str] = ()) 
     an option that denies it.
 
     Args:
-        only: the fields that have an option; empty for all.
-    """
+        only: the fields that have an option; empty for all."""
     return with_options(
         each for each in _parameters(kind) if (not only or each.name in only) and each.name not in but
     )

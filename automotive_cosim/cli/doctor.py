@@ -17,7 +17,7 @@ from typing import Annotated, NamedTuple
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.contracts.plain import counted
 
 STEP_IN, STEP_OUT = 600, 50
@@ -69,6 +69,7 @@ EXTRAS = {
 }
 
 
+@tells_json
 def doctor(
     model: Annotated[
         str,
@@ -79,12 +80,11 @@ def doctor(
             show_default=False,
         ),
     ] = "",
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Check this machine and say what is missing and how to install it.
 
-    Exit code 1 if episodes cannot run.
-    """
+    Exit code 1 if episodes cannot run."""
     tried = list(_of_model(model)) if model else []
     findings = [*(check() for check in CHECKS), *tried]
     ready = all(each.state is not Health.MISSING for each in findings)
@@ -103,8 +103,7 @@ def _of_model(name: str) -> Iterator[Finding]:
 
     Raises:
         UserError: it is no model of this machine, or its file none that can be run.
-        SetupError: its runtime is not installed.
-    """
+        SetupError: its runtime is not installed."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.formats.files import file_sha256
     from automotive_cosim.models.base import ChatMessage

@@ -19,14 +19,7 @@ from automotive_cosim.cli.batches import (
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
 from automotive_cosim.cli.derived import filled, settings_in, takes
-from automotive_cosim.cli.options import (
-    AsJson,
-    DriveChanges,
-    LimitSettings,
-    Most,
-    TasksFrom,
-    print_json,
-)
+from automotive_cosim.cli.options import DriveChanges, LimitSettings, Most, TasksFrom, print_json, tells_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words, model_and_options
 from automotive_cosim.episode.conditions import TABLE, lists_of
@@ -41,22 +34,17 @@ if TYPE_CHECKING:
     from automotive_cosim.run.rows import TrialRow
 
 
+@tells_json
 @takes_conditions(lists=True)
 @takes(EvaluationSettings, but=[each.name for each in TABLE])
 @takes(ExecutorSettings)
 @takes(RunSettings)
 @takes(Budget)
 @takes(DriveChanges)
-def evaluate(
-    most: Most = None,
-    tasks_from: TasksFrom = None,
-    as_json: AsJson = False,
-    **settings: Any,
-) -> None:
+def evaluate(most: Most = None, tasks_from: TasksFrom = None, as_json: bool = False, **settings: Any) -> None:
     """Run agents over tasks, scenarios and seeds, or over drives.
 
-    Rerun the command to resume.
-    """
+    Rerun the command to resume."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.report.answer import agents_as_json, answer
     from automotive_cosim.report.charts import is_installed
@@ -167,8 +155,7 @@ def evaluate(
 
 def _short(found: Results, at_least: float) -> list[str]:
     """What is below a share, agent by agent: of the episodes that were run, or of the score of drives; and what was
-    not run, as everything must have been.
-    """
+    not run, as everything must have been."""
     from automotive_cosim.report.drives import grouped, whole
 
     told = []
@@ -252,10 +239,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     if beyond := plan.beyond_the_list():
         table.add_row("left out", f"{_named(beyond)}: only a picture that --see withholds shows what they need")
     if unspoken := plan.unspoken():
-        table.add_row(
-            "left out",
-            f"{_named(unspoken)}: no phrasings in {languages_in_words(plan.languages)}",
-        )
+        table.add_row("left out", f"{_named(unspoken)}: no phrasings in {languages_in_words(plan.languages)}")
     if unheard := plan.unheard():
         table.add_row(
             "not heard",

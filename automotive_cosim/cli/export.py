@@ -21,8 +21,7 @@ def export(
     trial: Annotated[
         Path,
         typer.Argument(
-            help="Folder of `run` with --out, or of one run in pictures/ of `eval`.",
-            show_default=False,
+            help="Folder of `run` with --out, or of one run in pictures/ of `eval`.", show_default=False
         ),
     ],
     formats: Annotated[

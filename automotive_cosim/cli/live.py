@@ -90,8 +90,7 @@ class Live(TrialObserver):
 
         Args:
             by_hand: a person acts, whose typing no line may interrupt.
-            brief: only what was said and done, and the verdict in one line.
-        """
+            brief: only what was said and done, and the verdict in one line."""
         self._by_hand = by_hand
         self._brief = brief
         self._console = console or Console(highlight=False)

@@ -22,6 +22,7 @@ from pkgutil import resolve_name
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 import automotive_cosim
 from automotive_cosim.cli import CONTENTS, READ, RUN, TOOLS
@@ -87,6 +88,19 @@ SIGNED = "show context"
 """Its arguments may be negative numbers."""
 
 
+class Program(TyperGroup):
+    """The program. Its ``--json`` may stand among the words of a command that lists or reports."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Puts ``--json`` before a command that knows it, and behind one that does not, which refuses it."""
+        words, command = [word for word in args if word != "--json"], self
+        for word in words if len(words) < len(args) else ():
+            command = getattr(command, "commands", {}).get(word, command)
+        tells = getattr(command.callback, "tells_json", False)
+        asked = ["--json"] * (len(words) < len(args))
+        return super().parse_args(ctx, [*asked, *words] if tells else [*words, *asked])
+
+
 @cache
 def made(*asked: str) -> typer.Typer:
     """The command line; with the words that are asked for, only what they name is imported, because to import the
@@ -96,6 +110,7 @@ def made(*asked: str) -> typer.Typer:
     named = next((words for words in (" ".join(asked[:2]), *asked[:1]) if words in rows), "")
     app = typer.Typer(
         name="automotive-cosim",
+        cls=Program,
         help="Agents that operate the cockpit of a car in live SUMO traffic.",
         no_args_is_help=True,
         add_completion=False,
@@ -162,6 +177,9 @@ def _options(
     ] = False,
     debug: Annotated[
         bool, typer.Option("--debug", envvar="AUTOMOTIVE_COSIM_DEBUG", help="Show the traceback of an error.")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Where a command lists or reports: print JSON and nothing else.")
     ] = False,
 ) -> None:
     if debug:

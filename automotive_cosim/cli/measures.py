@@ -38,8 +38,7 @@ def measures(
 ) -> None:
     """Print the encounters of recorded runs with their surrogate measures of safety, as CSV or Parquet.
 
-    Those of an evaluation have a first column `trial`, with the id.
-    """
+    Those of an evaluation have a first column `trial`, with the id."""
     from automotive_cosim.exchange.needs import check_formats
     from automotive_cosim.exchange.trajectories import write_frame
     from automotive_cosim.formats.writing import write_whole
@@ -71,8 +70,7 @@ def measures(
     if not rows:
         whose = "any two vehicles" if everyone else "the ego and another vehicle (--everyone looks at all pairs)"
         typer.echo(
-            f"no encounters within {thresholds.range_m:g} m in {counted(seconds, 'second')}, of {whose}",
-            err=True,
+            f"no encounters within {thresholds.range_m:g} m in {counted(seconds, 'second')}, of {whose}", err=True
         )
     if out is None:
         typer.echo(as_csv(rows, kind, column), nl=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import math
 import os
@@ -9,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial, wraps
 from pathlib import Path
-from typing import Annotated, ParamSpec, get_type_hints
+from typing import Annotated, Any, ParamSpec, get_type_hints
 
 import typer
 from annotated_types import Ge, Le
@@ -73,8 +74,21 @@ def reads_results(command: Callable[P, None]) -> Callable[P, None]:
     return guarded
 
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
-"""For every command that lists or reports."""
+def tells_json(command: Callable[..., None]) -> Callable[..., None]:
+    """For every command that lists or reports: its ``as_json`` is the program's ``--json``, wherever it stands."""
+    signature = inspect.signature(command, eval_str=True)
+    context = inspect.Parameter("context", inspect.Parameter.KEYWORD_ONLY, annotation=typer.Context)
+
+    @wraps(command)
+    def told(*, context: typer.Context, **given: Any) -> None:
+        command(as_json=context.find_root().params.get("as_json", False), **given)
+
+    made: Any = told
+    made.tells_json = True
+    made.__doc__ = f"{command.__doc__}\n\n--json prints it as JSON, and nothing else."
+    own = [each.replace(kind=context.kind) for each in signature.parameters.values() if each.name != "as_json"]
+    made.__signature__ = signature.replace(parameters=[*own, context])
+    return told
 
 
 def print_json(values: object) -> None:

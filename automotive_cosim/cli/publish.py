@@ -14,7 +14,7 @@ from annotated_types import Ge, Le
 
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, number_in, takes
-from automotive_cosim.cli.options import MOST_SEED, AsJson, print_json, reads_results
+from automotive_cosim.cli.options import MOST_SEED, print_json, reads_results, tells_json
 from automotive_cosim.contracts.plain import counted
 
 MOST_LISTED = 50
@@ -43,6 +43,7 @@ def bundle(
 
 
 @app.command()
+@tells_json
 @takes(ExecutorSettings, only=["workers"])
 def verify(
     path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
@@ -64,10 +65,9 @@ def verify(
         ),
     ] = None,
     key: Annotated[
-        Path | None,
-        typer.Option(help="File with the key of a hidden split, to print its published hashes again."),
+        Path | None, typer.Option(help="File with the key of a hidden split, to print its published hashes again.")
     ] = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Check an evaluation or a bundle; exit code 1 if something does not match."""
@@ -98,10 +98,11 @@ def verify(
 
 
 @app.command()
+@tells_json
 @reads_results
 def regrade(
     path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Judge the stored runs again by the current checks and print what changes; nothing is written."""
     from automotive_cosim.publish.archive import unpacked

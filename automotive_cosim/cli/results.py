@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, print_json, reads_results
+from automotive_cosim.cli.options import print_json, reads_results, tells_json
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import install_hint
 
@@ -33,8 +33,7 @@ def report(
         typer.Option(help="Agent of the safety report or the protocol, if there are several.", show_default=False),
     ] = None,
     protocol: Annotated[
-        str | None,
-        typer.Option(help="Protocol whose rows the runs speak for: euroncap-2026.", show_default=False),
+        str | None, typer.Option(help="Protocol whose rows the runs speak for: euroncap-2026.", show_default=False)
     ] = None,
 ) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""
@@ -83,12 +82,12 @@ TrialId = Annotated[
 ]
 
 
+@tells_json
 @reads_results
-def attribute(folder: TrialFolder, episode: TrialId = "", as_json: AsJson = False) -> None:
+def attribute(folder: TrialFolder, episode: TrialId = "", as_json: bool = False) -> None:
     """Measure what each act of a stored run changed, by leaving it out, and add that to its page.
 
-    Acts that change nothing alone are also left out in pairs. Of a rerouting study, it tells of each decision.
-    """
+    Acts that change nothing alone are also left out in pairs. Of a rerouting study, it tells of each decision."""
     from automotive_cosim.formats.layout import PAGE
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.attribution import attribute as measured
@@ -118,6 +117,7 @@ def _tell_effects(effects: Sequence[ActEffect], *, as_json: bool) -> None:
         typer.echo(f"    effect: {each.effect}")
 
 
+@tells_json
 @reads_results
 def replay(
     folder: TrialFolder,
@@ -129,12 +129,11 @@ def replay(
     out: Annotated[
         Path | None, typer.Option(help="New folder for what is replayed, with its pictures.", show_default=False)
     ] = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Replay the actions of a stored run and compare the traces.
 
-    A car of a fleet is replayed with all cars of it. Exit code 1 if the traces differ.
-    """
+    A car of a fleet is replayed with all cars of it. Exit code 1 if the traces differ."""
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.record import check_folder
     from automotive_cosim.run.rerun import rerun

@@ -14,7 +14,6 @@ from automotive_cosim.cli.conditions import given, takes_conditions
 from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.options import (
     AGENT_HELP,
-    AsJson,
     DriveChanges,
     Force,
     LimitSettings,
@@ -24,6 +23,7 @@ from automotive_cosim.cli.options import (
     TasksFrom,
     print_json,
     tell_opening,
+    tells_json,
 )
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import PLACE, GeoInput
@@ -63,6 +63,7 @@ HEADLINE = (
 PAIR_TITLES = ("Knows where it is", "The same agent, place withheld")
 
 
+@tells_json
 @takes_conditions()
 @takes(EpisodeSettings, but=["seed"])
 @takes(SingleSettings)
@@ -74,7 +75,7 @@ def run(
     most: Most = None,
     seed: Seed = 0,
     force: Force = False,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Run one episode or drive: a task or a family of drives, an agent, a seed.

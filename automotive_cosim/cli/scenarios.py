@@ -14,7 +14,7 @@ import typer
 from automotive_cosim import scenarios
 from automotive_cosim.cli.batches import tell_notes
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json, tell_opening
+from automotive_cosim.cli.options import print_json, tell_opening, tells_json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm.area import Area
@@ -34,7 +34,8 @@ app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_hel
 
 
 @app.command("list")
-def list_scenarios(as_json: AsJson = False) -> None:
+@tells_json
+def list_scenarios(as_json: bool = False) -> None:
     """List the scenarios that come with the package."""
     from automotive_cosim.scenarios.listing import listed
 
@@ -53,10 +54,8 @@ WHICH = "A shipped scenario's name, a scenario's folder, any .sumocfg or .net.xm
 
 
 @app.command("show")
-def show(
-    scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")],
-    as_json: AsJson = False,
-) -> None:
+@tells_json
+def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: bool = False) -> None:
     """Show one scenario: its place, time, weather, ego trips, and the edges that options like --incident name."""
     from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.scenarios.streets import streets
@@ -155,16 +154,16 @@ Names = Annotated[
 
 
 @app.command("check")
+@tells_json
 def check_scenarios(
     names: Names = None,
     quick: Annotated[bool, typer.Option("--quick", help="Skip the hour of traffic.")] = False,
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Prove that scenarios are as described; exit code 1 if one is not.
 
     Each is loaded, warmed up and located. Its streets and limits are compared with those that it states, every trip
-    of the ego is driven to its end, its situations must occur, and its traffic must flow for an hour.
-    """
+    of the ego is driven to its end, its situations must occur, and its traffic must flow for an hour."""
     from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.scenarios.check import check
 
@@ -253,8 +252,7 @@ def import_scenario(
 
     The traffic is scaled down until it flows after its warm-up: for half an hour (--minutes) in steps of 1 s, then
     for ten minutes in the scenario's own. Reading the map, building the
-    network and testing the traffic take one to three minutes for a city district.
-    """
+    network and testing the traffic take one to three minutes for a city district."""
     from automotive_cosim.osm.importer import import_map, scenario_name
 
     options = filled(ImportOptions, settings)

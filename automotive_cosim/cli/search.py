@@ -20,7 +20,7 @@ from automotive_cosim.cli.batches import (
     minutes_in_words,
 )
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AgentName, AsJson, ModelName, print_json
+from automotive_cosim.cli.options import AgentName, ModelName, print_json, tells_json
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.safety.settings import SearchOrder, SearchSettings
@@ -45,20 +45,15 @@ SETTINGS = "search.json"
 """File of a search's folder with what it was started with."""
 
 
+@tells_json
 @takes(SearchOrder)
 @takes(SearchSettings)
 @takes(ExecutorSettings)
-def search(
-    agent: AgentName,
-    model: ModelName = "rules",
-    as_json: AsJson = False,
-    **settings: Any,
-) -> None:
+def search(agent: AgentName, model: ModelName = "rules", as_json: bool = False, **settings: Any) -> None:
     """Search a space of situations and conditions for failures of an agent. Rerun the command to resume.
 
     Combinations that are spread evenly run in parallel, or on a cluster; what is learnt from them runs here, one
-    by one. After Ctrl-C the page has what was found by then.
-    """
+    by one. After Ctrl-C the page has what was found by then."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.formats.writing import write_whole
     from automotive_cosim.report.stats import distributions
@@ -95,12 +90,7 @@ def search(
     check_space(space, plan)
     folder = order.out or Path("runs") / f"search-{file.stem}-{agent.replace(':', '.')}"
     console = Console(highlight=False)
-    about: Json = {
-        "space": file.read_text(encoding="utf-8"),
-        "agent": agent,
-        "model": model,
-        **asdict(how),
-    }
+    about: Json = {"space": file.read_text(encoding="utf-8"), "agent": agent, "model": model, **asdict(how)}
     laid, used_s = _before(folder, about, may_use.points or LAID)
     make_sampler(how.sampler, space, laid, how.seed)  # which may need what is not installed
     where = choice.opened()

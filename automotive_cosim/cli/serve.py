@@ -16,9 +16,7 @@ def serve(
     folders: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Folders of `run` or `eval`, or folders that hold them.",
-            metavar="[RUNS]...",
-            show_default="runs",
+            help="Folders of `run` or `eval`, or folders that hold them.", metavar="[RUNS]...", show_default="runs"
         ),
     ] = None,
     **settings: Any,
@@ -27,8 +25,7 @@ def serve(
 
     Open the address that it prints: anyone who has it can read what is in the folders and, with --play, play.
     Played episodes are recorded in the first folder; a study in a subfolder named after its file. Ctrl-C stops the
-    server: runs do not depend on it, and a study resumes where it was.
-    """
+    server: runs do not depend on it, and a study resumes where it was."""
     from automotive_cosim.formats.writing import make_folder
     from automotive_cosim.serve.server import WebServer
 

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 
@@ -55,7 +55,8 @@ def screens(
     typer.echo(f"{out} written")
 
 
-def signals(as_json: AsJson = False) -> None:
+@tells_json
+def signals(as_json: bool = False) -> None:
     """List the vehicle's signals: path, kind, valid values, default."""
     from automotive_cosim.cockpit.signals import CATALOGUE
 
@@ -72,8 +73,9 @@ def signals(as_json: AsJson = False) -> None:
         typer.echo(f"{path:<{width}}  {signal.kind:<8}  {signal.range}; {default}")
 
 
+@tells_json
 def functions(
-    as_json: Annotated[bool, typer.Option("--json", help="Print each with its JSON Schema.")] = False,
+    as_json: bool = False,
     tools: Annotated[
         str, typer.Option(metavar="FORM", help="Print them as tools of an API: openai, mcp or anthropic.")
     ] = "",
@@ -96,7 +98,8 @@ def functions(
     typer.echo(f"\n{len(every)} functions; --json and --tools print their JSON Schemas")
 
 
-def drives(as_json: AsJson = False) -> None:
+@tells_json
+def drives(as_json: bool = False) -> None:
     """List the families of drives, with their season and what can happen in them."""
     from automotive_cosim.drives.families import FAMILIES
 
@@ -112,7 +115,8 @@ def drives(as_json: AsJson = False) -> None:
         typer.echo(f"{'':34} stages {', '.join(family['stages'])}")
 
 
-def apps(as_json: AsJson = False) -> None:
+@tells_json
+def apps(as_json: bool = False) -> None:
     """List the apps of the car by the names that the action open_app takes."""
     from automotive_cosim.cockpit.registry import apps as known
 
@@ -123,11 +127,11 @@ def apps(as_json: AsJson = False) -> None:
     _tell("apps", told, as_json=as_json)
 
 
-def events(as_json: AsJson = False) -> None:
+@tells_json
+def events(as_json: bool = False) -> None:
     """List all that may happen on drives: kinds of events with what is due, and what can be staged.
 
-    Each kind has its look-alike, when an alert is right, and the source.
-    """
+    Each kind has its look-alike, when an alert is right, and the source."""
     from automotive_cosim.drives.events import KINDS
     from automotive_cosim.drives.staging import BRINGS, ON_REQUEST
 
@@ -156,14 +160,16 @@ def events(as_json: AsJson = False) -> None:
     )
 
 
-def wakes(as_json: AsJson = False) -> None:
+@tells_json
+def wakes(as_json: bool = False) -> None:
     """List the changes of the readings that end a wait on a drive."""
     from automotive_cosim.drives.changes import WAKES
 
     _tell("wakes", [{"id": each.name, "about": each.about} for each in WAKES], as_json=as_json)
 
 
-def spaces(as_json: AsJson = False) -> None:
+@tells_json
+def spaces(as_json: bool = False) -> None:
     """List the scenarios that `search --space` knows by name."""
     from automotive_cosim.safety.space import LIBRARY, read_space
 
@@ -172,7 +178,8 @@ def spaces(as_json: AsJson = False) -> None:
     )
 
 
-def factors(as_json: AsJson = False) -> None:
+@tells_json
+def factors(as_json: bool = False) -> None:
     """List what a search varies on drives, besides the conditions (`eval --help`)."""
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.formats.docs import field_docs
@@ -181,7 +188,8 @@ def factors(as_json: AsJson = False) -> None:
     _tell("factors", told, as_json=as_json)
 
 
-def policy(as_json: AsJson = False) -> None:
+@tells_json
+def policy(as_json: bool = False) -> None:
     """List the house rules, which `--policy house` tells an agent."""
     from automotive_cosim.interface.house_rules import HOUSE
 
@@ -207,9 +215,9 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float)
 
 
+@tells_json
 def memory(
-    file: Annotated[Path, typer.Argument(help="The file given to `run --memory`.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
+    file: Annotated[Path, typer.Argument(help="The file given to `run --memory`.")], as_json: bool = False
 ) -> None:
     """Show what ASURADA remembers: which strategy it tried where, for what, and how often it worked."""
     from automotive_cosim.agents.memory import Memory

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, SuiteName, TaskNames, print_json
+from automotive_cosim.cli.options import SuiteName, TaskNames, print_json, tells_json
 from automotive_cosim.cli.validate import validate
 from automotive_cosim.contracts.plain import counted
 
@@ -19,11 +19,8 @@ app.command("validate")(validate)
 
 
 @app.command("list")
-def list_(
-    tasks: TaskNames = "all",
-    suite: SuiteName = "standard",
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
-) -> None:
+@tells_json
+def list_(tasks: TaskNames = "all", suite: SuiteName = "standard", as_json: bool = False) -> None:
     """List the tasks, one per line, then their counts by module and dimension, and in the hard suite by ability."""
     from automotive_cosim.run.difficulty import hardest, level, rated
 
@@ -43,9 +40,9 @@ def list_(
 
 
 @app.command()
+@tells_json
 def show(
-    task: Annotated[str, typer.Argument(help="Id of the task.", show_default=False)],
-    as_json: AsJson = False,
+    task: Annotated[str, typer.Argument(help="Id of the task.", show_default=False)], as_json: bool = False
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""
     from automotive_cosim.proof import trail
@@ -54,13 +51,7 @@ def show(
     from automotive_cosim.tasks import CATALOGUE
 
     entry = CATALOGUE[task]
-    halves = {
-        name: [
-            *half_in_words(entry.half(name)),
-            *trail.of_half(entry, name),
-        ]
-        for name in entry.halves
-    }
+    halves = {name: [*half_in_words(entry.half(name)), *trail.of_half(entry, name)] for name in entry.halves}
     if as_json:
         print_json(difficulty.rated(entry) | {"trail": list(trail.of_task(entry)), "halves": halves})
         return

@@ -89,8 +89,7 @@ def print_alone(text: str) -> None:
 def open_streams() -> None:
     """Gives the process a standard input, output and error where it was started without one, as some services do.
 
-    Otherwise the next file that is opened would take the number of the stream, and be printed into.
-    """
+    Otherwise the next file that is opened would take the number of the stream, and be printed into."""
     while (opened := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(opened, True)
     os.close(opened)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json
+from automotive_cosim.cli.options import TasksFrom, print_json, tells_json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.proof.settings import ProofSettings
@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 FAILED = 1
 
 
+@tells_json
 @takes(ProofSettings)
-def validate(tasks_from: TasksFrom = None, as_json: AsJson = False, **settings: Any) -> None:
+def validate(tasks_from: TasksFrom = None, as_json: bool = False, **settings: Any) -> None:
     """Prove that tasks can be solved by public actions, cannot be solved by trivial strategies, and repeat exactly.
 
     Exit code 1 if a gate fails, else 3 if a proof could not be completed. With --out, rerun the command to resume.

@@ -32,8 +32,7 @@ def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
     """All widgets that have texts, react to touch or scroll, in drawing order.
 
     Args:
-        scale: pixels per logical pixel.
-    """
+        scale: pixels per logical pixel."""
     return tuple(chain.from_iterable(_part(child, scale) for child in screen.children))
 
 

@@ -169,9 +169,7 @@ FIELDS: Mapping[ActionType, Takes] = {
         words="waits {for_s} s",
     ),
     ActionType.ANSWER: Takes(
-        "tell the driver something; it is no warning",
-        required=("text",),
-        words="says “{text}”",
+        "tell the driver something; it is no warning", required=("text",), words="says “{text}”"
     ),
     ActionType.STATUS: Takes(
         "declare how it ended: complete when it is done; infeasible, after an answer that tells the driver why, "
@@ -339,8 +337,7 @@ def signatures(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = Fal
     where the name does not say it.
 
     Args:
-        by_point: whether there is no list of elements, so that a target is a point.
-    """
+        by_point: whether there is no list of elements, so that a target is a point."""
     return "\n".join(
         f"{kind}({', '.join(_signature(takes, by_point))})"
         + (f": {_about(takes, by_point)}" if is_told and takes.words else "")
@@ -379,8 +376,7 @@ def schema_of(kinds: Collection[ActionType], indices: Sequence[int] | None) -> J
     target given in one way.
 
     Args:
-        indices: those of the elements that can be acted on; None if a target is a point.
-    """
+        indices: those of the elements that can be acted on; None if a target is a point."""
     members = []
     for kind, takes in FIELDS.items():
         if kind not in kinds or (takes.target and indices is not None and not indices):
@@ -449,8 +445,7 @@ def perform(action: Action, cockpit: Cockpit, elements: Sequence[Element]) -> Fe
         elements: the list that the agent saw, to which an index refers; empty if it was given none.
 
     Returns:
-        The result. A wrong action changes nothing.
-    """
+        The result. A wrong action changes nothing."""
     if action.index is not None and not elements:
         return Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("there is no list of elements; give x and y"))
     if action.index is not None and not 0 <= action.index < len(elements):
@@ -478,8 +473,7 @@ def action_in_words(action: Action | None, elements: Sequence[Element], waited_s
     Args:
         action: None if the agent raised, or its answer could not be read.
         elements: the list the agent saw when it acted.
-        waited_s: how long a wait lasted, if something may have ended it.
-    """
+        waited_s: how long a wait lasted, if something may have ended it."""
     if action is None:
         return "gives no action"
     because = action.reason not in (None, Reason.NONE)

@@ -195,8 +195,7 @@ class CabinStart:
 
         Raises:
             UnknownNameError: no such field.
-            UserError: a value is of the wrong type or impossible for a cabin.
-        """
+            UserError: a value is of the wrong type or impossible for a cabin."""
         known = [field.name for field in fields(cls)]
         for name in given:
             if name not in known:
@@ -298,8 +297,7 @@ class Cabin:
         """Air as it leaves the outlets: taken in, dried and cooled by the evaporator, then heated.
 
         The control adds to what holds the set temperature, by the cabin's balance of heat, a part for the present
-        deviation: so the cabin settles at what is set, as far as compressor, heater and fan can.
-        """
+        deviation: so the cabin settles at what is set, as far as compressor, heater and fan can."""
         if controls.recirculation:
             taken_c, ratio = self.temperature_c, self.moisture
         else:
@@ -370,8 +368,7 @@ def parked_c(cabin_c: float, minutes: float, controls: Controls, outside: Air, s
         controls: how it is left. With ``fan_pct`` the climate control holds ``set_c``, at whatever fan speed up to
             full that takes, as far as the compressor and the heater can.
         outside: the weather, which stays as it is.
-        sun_w: heat of the sun, up to ``SUN_W``.
-    """
+        sun_w: heat of the sun, up to ``SUN_W``."""
     lost = CABIN_LOSS + AIR_DENSITY * CABIN_VOLUME_M3 * _leaks_per_hour(controls, outside) / 3600 * AIR_CP
     gained_w = lost * outside.temperature_c + sun_w + controls.people * OCCUPANT_HEAT_W
     blown = BLOWER_FULL * AIR_CP if controls.fan_pct else 0.0
@@ -392,8 +389,7 @@ def hottest_c(taken_c: float, blown: float) -> float:
 
     Args:
         taken_c: temperature of the air before it.
-        blown: air flow, kg/s; 0 for none.
-    """
+        blown: air flow, kg/s; 0 for none."""
     if not blown:
         return taken_c
     share = 1 - math.exp(-HEATER_NTU_FULL * math.sqrt(BLOWER_FULL / blown))

@@ -157,8 +157,7 @@ def call(state: State, name: str, arguments: Mapping[str, Any]) -> Feedback:
         arguments: checked ones (``CarFunction.read``).
 
     Returns:
-        What was set or read, or why not.
-    """
+        What was set or read, or why not."""
     function = functions()[name]
     lacking = next((each for each in state.vehicle.lacks if name in each.functions), None)
     if lacking is not None:

@@ -104,8 +104,7 @@ def switch(
     Args:
         key: if it is not that of the signal's control; so for ``name``.
         group: tells it apart from those of the same name in other groups for whoever hears it alone.
-        disabled: why it cannot be used now.
-    """
+        disabled: why it cannot be used now."""
     control, on = CONTROLS[signal], state.signals[signal]
     text = control.name if name is None else name
     return Tile(
@@ -137,8 +136,7 @@ def levels(
         steps: each value and what it is called.
         key: if it is not that of the signal's control; so for ``name`` and ``icon``.
         group: as of ``switch``.
-        told: its description, if it is another one.
-    """
+        told: its description, if it is another one."""
     control = CONTROLS[signal]
     values, text = [value for value, _ in steps], name or control.name
     now = state.signals[signal]
@@ -209,8 +207,7 @@ def stepper(
         name: as ``key``.
         locked: why it is locked while driving; empty if it is not.
         gauge: whether it shows its ends, and by a bar under the value how far it is between them.
-        bare: whether the value stands elsewhere.
-    """
+        bare: whether the value stands elsewhere."""
     control, value = CONTROLS[signal], signals[signal]
     key, name = key or control.key, name or control.name
     words = control.ways(name, _step(signal, signals))
@@ -268,8 +265,7 @@ def schedule(
     """A switch, and the time of day at which something is done, half an hour earlier or later at a tap.
 
     Args:
-        key: of the switch, like ``text`` and ``icon``; those of the time begin with it.
-    """
+        key: of the switch, like ``text`` and ``icon``; those of the time begin with it."""
 
     def moved(by_min: int) -> Put:
         new = timer.moved(by_min)
@@ -324,8 +320,7 @@ def rows(
         key: its own, under which the state remembers how far it is scrolled.
         entry: makes the row of an entry, from its index.
         columns: entries side by side.
-        gap: between rows and columns.
-    """
+        gap: between rows and columns."""
 
     def made(rect: Rect) -> Rows:
         if state.is_typing:  # above the keyboard, but for a row at least

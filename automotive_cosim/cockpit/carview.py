@@ -38,8 +38,7 @@ def car(
         height: pixels.
         windshield: its opacity in tenths.
         rear_window: its opacity in tenths.
-        palette: the colours of what is around it.
-    """
+        palette: the colours of what is around it."""
     unit = width / 300
     x, y = width / 2, height / 2 + SHIFT_DOWN * unit
     light = _light(width, height, lamps, palette)

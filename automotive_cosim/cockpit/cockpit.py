@@ -37,15 +37,7 @@ from automotive_cosim.cockpit.pois import Gazetteer
 from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.sensing import put_back, readings, sense
-from automotive_cosim.cockpit.signals import (
-    HMI,
-    LIGHTS,
-    LINK,
-    LeafKind,
-    Signal,
-    Signals,
-    named,
-)
+from automotive_cosim.cockpit.signals import HMI, LIGHTS, LINK, LeafKind, Signal, Signals, named
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import CommandRecord, State
 from automotive_cosim.cockpit.touchscreen import Touchscreen
@@ -117,8 +109,7 @@ class Cockpit(Touchscreen):
         Raises:
             UnknownNameError: no such signal or initial condition.
             SignalError: an illegal value, or one the car refuses.
-            UserError: an arrival, a change or an occupant is impossible.
-        """
+            UserError: an arrival, a change or an occupant is impossible."""
         state = self._state = State(
             Vehicle(Signals()), road_map(network), sign_camera, CabinStart.read(cabin or {})
         )
@@ -200,8 +191,7 @@ class Cockpit(Touchscreen):
 
         Raises:
             UnknownNameError: no such signal.
-            SignalError: the value is illegal.
-        """
+            SignalError: the value is illegal."""
         signal = named(path)
         self.signals[signal] = value
         if signal.kind is not LeafKind.ACTUATOR:
@@ -297,8 +287,7 @@ class Cockpit(Touchscreen):
         ``contacts`` (those that the list shows even while driving), ``favourite_contacts``, ``threads`` and
         ``unread`` (senders of messages, and of unread ones), ``places``, ``favourite_places``, ``streets`` (neither
         among these nor hidden behind another in a search), ``playlists``, ``tracks``, ``podcasts``, ``fm``, ``dab``
-        (stations).
-        """
+        (stations)."""
         return {kind: names for data in self._state.apps for kind, names in data.names(self._state).items()}
 
     def spoken(self, feedback: Feedback) -> Feedback:

@@ -9,9 +9,7 @@ from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.drawing import pixels_of
 from automotive_cosim.cockpit.render import render, repaint
 from automotive_cosim.cockpit.widgets import Screen
-from automotive_cosim.contracts import (
-    Element,
-)
+from automotive_cosim.contracts import Element
 
 
 @dataclass(frozen=True, slots=True)

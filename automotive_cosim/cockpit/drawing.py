@@ -96,9 +96,7 @@ class Canvas:
             if across[0] < across[2] and across[1] < across[3]:
                 self._draw.rectangle((across[0], across[1], across[2] - 1, across[3] - 1), fill)
         for corner, mask in zip(
-            ((left, top), (right - r, top), (right - r, bottom - r), (left, bottom - r)),
-            _corners(r),
-            strict=True,
+            ((left, top), (right - r, top), (right - r, bottom - r), (left, bottom - r)), _corners(r), strict=True
         ):
             self.image.paste(fill, corner, mask)
 
@@ -121,8 +119,7 @@ class Canvas:
             style: a style of the type scale; smaller ones are used as needed.
             align: ``left``, ``centre`` or ``right``.
             lines: maximum number of lines.
-            keeps_end: whether it loses its beginning where it is too long.
-        """
+            keeps_end: whether it loses its beginning where it is too long."""
         if not text:
             return
         style, rows, cut = fit(text, style, box.width, lines, box.height, keeps_end=keeps_end)
@@ -199,8 +196,7 @@ def fit(
     Args:
         lines: maximum number of lines, as long as the text fits on them in some style.
         height: height of the box; more lines are used before the smallest style if it has room for them.
-        keeps_end: whether it loses its beginning where it has to be cut.
-    """
+        keeps_end: whether it loses its beginning where it has to be cut."""
     text = _BLANKS.sub(" ", text).strip(" ")
     styles = [style]
     while styles[-1] in SMALLER:

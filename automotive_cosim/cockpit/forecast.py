@@ -19,8 +19,7 @@ def cabin_c(vehicle: Vehicle, minutes: float, *, climate: bool) -> float:
 
     Args:
         vehicle: as it is left, with its windows and who else is aboard.
-        climate: whether the climate control goes on by itself, at the temperature that is set.
-    """
+        climate: whether the climate control goes on by itself, at the temperature that is set."""
     now = vehicle.signals
     outside = Air(now[OUTSIDE.TEMPERATURE], now[OUTSIDE.HUMIDITY], 0.0, 0.0)
     left = _left(vehicle.controls(0.0), climate, breath(now, without=Seat.DRIVER))

@@ -70,8 +70,7 @@ def _bar(frame: Frame) -> tuple[Rect, ...]:
     """The boxes of the status bar in the order of ``status_bar``, then those of the callouts and of the limit sign.
 
     From the left what time brings, from the right what the drive does; between them, or in a second line, what
-    comes and goes.
-    """
+    comes and goes."""
     size = frame.size
     lines = frame.status.rows(size.bars, 0)
     left, between, right = row(lines[0], BEFORE, REST, AFTER)
@@ -246,8 +245,7 @@ def _limit_sign(state: State) -> Widget | None:
 def dock(state: State) -> tuple[Widget, ...]:
     """The apps in the middle, the temperatures and defrosters within the front seats' reach.
 
-    It seldom changes, and is the same object as long as it does not. The driver's side is that of the traffic.
-    """
+    It seldom changes, and is the same object as long as it does not. The driver's side is that of the traffic."""
     here = root(state.make, state.screen)
     values = tuple(state.signals[signal] for signal in DOCKED)
     return _dock(state.make, state.size, here, values, state.roads.network.left_hand)

@@ -47,8 +47,7 @@ def number_in(value: Any, most: float) -> float | None:
     """A number from an int, a float or its text; None if it is none.
 
     Args:
-        most: what is farther from zero becomes this: a float may not hold it.
-    """
+        most: what is farther from zero becomes this: a float may not hold it."""
     if isinstance(value, str):
         try:
             value = float(value) if len(value) <= LONGEST_NUMBER else None
@@ -187,8 +186,7 @@ def offered(make: Callable[..., CallMade]) -> CarFunction:
     """The function that a factory defines: its name, the first paragraph of its docstring, its typed arguments.
 
     The first argument is the state. Of ``Annotated`` ones, a string is the description, ``Ge``, ``Le`` and
-    ``MultipleOf`` are bounds, ``OneOf`` and ``Literal`` list the choices.
-    """
+    ``MultipleOf`` are bounds, ``OneOf`` and ``Literal`` list the choices."""
     return _from_factory(make, reads=False)
 
 
@@ -420,8 +418,7 @@ def _unknown(what: str, name: str, known: tuple[str, ...]) -> Feedback:
 def named(name: str, known: Iterable[str]) -> str | None:
     """The name as it is spelled, whatever the case, or the only one that has all its words; None if there is none.
 
-    As who speaks may leave out a surname or a street's kind, so may a call, where one thing alone can be meant.
-    """
+    As who speaks may leave out a surname or a street's kind, so may a call, where one thing alone can be meant."""
     names = list(dict.fromkeys(known))
     if name in names:
         return name

@@ -44,8 +44,7 @@ class GroundMap:
         Args:
             view: from metres to its pixels.
             size: width and height of the picture.
-            pixel: pixels of the picture per pixel that is seen, if it is made smaller afterwards.
-        """
+            pixel: pixels of the picture per pixel that is seen, if it is made smaller afterwards."""
         found = self._tree.query(view.bounds(*size))
         found = np.sort(found[self._sizes_m[found] * view.per_metre >= LEAST_PX * pixel])
         for at in found.tolist():

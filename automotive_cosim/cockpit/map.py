@@ -108,8 +108,7 @@ class RoadMap:
     def in_sight(self, view: View, width: float, height: float) -> list[Stroke]:
         """The roads in a picture of that size, the uppermost last: tunnels, then minor roads, then major roads.
 
-        From further away, quiet roads are omitted, then side streets.
-        """
+        From further away, quiet roads are omitted, then side streets."""
         found = self._tree.query(view.sight(width, height), predicate="intersects")
         found = found[self._ranks[found] >= _least_rank(view.camera.metres_per_pixel)]
         return self._strokes(found[np.lexsort((found, self._depths[found]))], view)
@@ -123,8 +122,7 @@ class RoadMap:
         """Street names for a map that fills ``area``: major roads first, without overlaps.
 
         Args:
-            area: the map's area on the screen.
-        """
+            area: the map's area on the screen."""
         view = View(camera, 1 / camera.metres_per_pixel, area.width / 2, area.height * camera.down)
         found = np.sort(self._named_tree.query(view.bounds(area.width, area.height)))
         middles = view.pixels(self._middles[found]) + np.array((area.x, area.y))

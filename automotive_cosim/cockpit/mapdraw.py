@@ -103,8 +103,7 @@ def _sheet(
         size: size of the sheet in pixels.
         scale: pixels per logical pixel.
         route: edges of the route ahead.
-        slow: edges and the relative speed of their traffic.
-    """
+        slow: edges and the relative speed of their traffic."""
     column, row, step = place
     camera = Camera(0.0, 0.0, heading_deg, metres_per_pixel)
     wide, high = size[0] * _FINE, size[1] * _FINE

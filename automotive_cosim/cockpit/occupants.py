@@ -107,8 +107,7 @@ def take_seats(signals: Signals, aboard: Iterable[Occupant]) -> None:
 
     Raises:
         UserError: two on one seat, a driver who cannot drive, or a thing that sleeps.
-        SignalError: an impossible weight.
-    """
+        SignalError: an impossible weight."""
     taken = set[Seat]()
     for one in aboard:
         if one.seat in taken:
@@ -172,8 +171,7 @@ def breath(signals: Signals, without: Seat | None = None) -> float:
     Body size and metabolism, Hilgardia 6, 1932).
 
     Args:
-        without: a seat that is left out, as the driver's once the driver has gone.
-    """
+        without: a seat that is left out, as the driver's once the driver has gone."""
     return _breath(signals.picked(_read), without)
 
 

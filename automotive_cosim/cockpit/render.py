@@ -17,12 +17,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.mapdraw import draw
 from automotive_cosim.cockpit.photos import photo
 from automotive_cosim.cockpit.telltales import SignKind, colour, sign_picture, symbol
-from automotive_cosim.cockpit.theme import (
-    Colour,
-    Icon,
-    Palette,
-    Type,
-)
+from automotive_cosim.cockpit.theme import Colour, Icon, Palette, Type
 from automotive_cosim.cockpit.widgets import (
     Badge,
     Bar,
@@ -80,8 +75,7 @@ def repaint(before: Screen, pixels: npt.NDArray[np.uint8], screen: Screen) -> tu
     """Draws the tree on the picture of another, (height, width, 3), RGB, only where they differ.
 
     Returns:
-        The same picture as from ``render``, and the boxes that were redrawn.
-    """
+        The same picture as from ``render``, and the boxes that were redrawn."""
     gone = [widget for widget in before.children if widget not in screen.children]
     come = [widget for widget in screen.children if widget not in before.children]
     reaches = [(widget, _reach(widget, screen)) for widget in screen.children]
@@ -189,14 +183,7 @@ def _choice_icon(choice: Choice) -> int:
 
 
 def _content(
-    canvas: Canvas,
-    rect: Rect,
-    icon: Icon | None,
-    size: int,
-    text: str,
-    style: Type,
-    ink: Colour,
-    stacked: bool,
+    canvas: Canvas, rect: Rect, icon: Icon | None, size: int, text: str, style: Type, ink: Colour, stacked: bool
 ) -> None:
     """An icon, a text or both, in the middle of a box."""
     if icon is None or not text:

@@ -93,8 +93,7 @@ def note_answer(state: State, request: RoadRequest, answer: Answer) -> None:
 def repeat(state: State, record: CommandRecord, keys: frozenset[str]) -> None:
     """Gives once more a command that was given elsewhere, as far as it aims at these keys of ``State.commands``.
 
-    What it asks of the road is answered as it was then.
-    """
+    What it asks of the road is answered as it was then."""
     record.command.repeat(state, record, keys)
     pending, state.pending = state.pending, ()
     for request in pending:

@@ -185,11 +185,7 @@ def _climate(state: State, driving: DrivingState, weather: Weather, dt_s: float)
     signals = state.signals
     rain = 0.0 if driving.road.in_tunnel else weather.precipitation
     air = Air(
-        weather.temperature_2m,
-        weather.relative_humidity_2m,
-        rain,
-        driving.speed_mps,
-        signals[OUTSIDE.FINE_DUST],
+        weather.temperature_2m, weather.relative_humidity_2m, rain, driving.speed_mps, signals[OUTSIDE.FINE_DUST]
     )
     cabin = state.cabin or Cabin.at(state.cabin_start, air)
     state.cabin = cabin.after(dt_s, state.vehicle.controls(rain), air)
@@ -276,8 +272,7 @@ def put_back(state: State, departed: State, surroundings: Surroundings, way: tim
         state: changed in place.
         departed: the same cockpit's at departure.
         surroundings: the present ones, at the departure's time of day.
-        with_air: whether air, glass, seats and tyres are put back too.
-    """
+        with_air: whether air, glass, seats and tyres are put back too."""
     for signal in (*USED, *(BODIES if with_air else ())):
         state.signals[signal] = departed.signals[signal]
     if with_air:

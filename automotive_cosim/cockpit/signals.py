@@ -551,8 +551,7 @@ class Signals:
 
         Raises:
             UnknownNameError: no such path.
-            SignalError: a value is invalid.
-        """
+            SignalError: a value is invalid."""
         self._values: dict[str, Any] = {path: signal.default for path, signal in CATALOGUE.items()}
         self._commanded: tuple[Any, ...] | None = None
         """The actuators' values, once somebody has asked for them since one was set."""

@@ -36,8 +36,7 @@ def feel(signals: Signals, surroundings: Surroundings, measures_grip: bool = Fal
     """Writes the sensors' readings of the surroundings.
 
     Args:
-        measures_grip: whether the car measures the road's grip, and does not also infer it from the weather.
-    """
+        measures_grip: whether the car measures the road's grip, and does not also infer it from the weather."""
     driving, weather = surroundings.driving, surroundings.weather
     tunnel = driving.road.in_tunnel
     signals[OUTSIDE.VISIBILITY] = weather.visibility

@@ -80,8 +80,7 @@ class AppData:
         Args:
             state: in the present surroundings.
             before: the surroundings at the last time; None at departure.
-            dt_s: seconds since.
-        """
+            dt_s: seconds since."""
 
     def received(self, state: State) -> None:
         """Takes in what has come from outside."""
@@ -126,8 +125,7 @@ class Command(Message):
         """The keys of ``State.commands`` that it is given for, without what the car couples to them.
 
         Args:
-            state: before it is performed.
-        """
+            state: before it is performed."""
 
     def changes(self, state: State) -> Mapping[str, Any]:
         """The fields of app data that it will change, if it replaces app data."""

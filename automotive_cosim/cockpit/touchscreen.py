@@ -97,8 +97,7 @@ class Touchscreen:
             x: where the finger touches, in pixels of the screenshot.
             y: where the finger touches, in pixels of the screenshot.
             distance_px: its length. A slider takes the value where the finger lifts, a list moves by the rows
-                passed, the map moves along. Without it: a tenth of the range, a page, over a third of the map.
-        """
+                passed, the map moves along. Without it: a tenth of the range, a page, over a third of the map."""
         far = None if distance_px is None else distance_px / self._scale
         slider = self._under(x, y, Slider)
         if slider is not None and direction in (Direction.LEFT, Direction.RIGHT):
@@ -124,8 +123,7 @@ class Touchscreen:
         """Scrolls a list by a page; ``down`` reveals what is below.
 
         Args:
-            key: of the list or of something in it; empty for the first list on the screen.
-        """
+            key: of the list or of something in it; empty for the first list on the screen."""
         lists = [widget for widget in self._screen.walk() if isinstance(widget, Rows)]
         if key:
             if all(widget.key != key for widget in self._screen.walk()):

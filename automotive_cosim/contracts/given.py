@@ -212,8 +212,7 @@ class OrFile(StrEnum):
 class PromptLength(OrFile):
     """How much of the same facts the prompt of T3A, M3A and ASURADA spells out.
 
-    Or ``FILE@SHA-256``, a file in place of the standard one's instructions (``episode.own_prompt``).
-    """
+    Or ``FILE@SHA-256``, a file in place of the standard one's instructions (``episode.own_prompt``)."""
 
     STANDARD = "standard"
     """What an action takes once, each element in a few words, and of the rules those that can matter."""

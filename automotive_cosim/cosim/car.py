@@ -33,8 +33,7 @@ def handled(reaction: str, signals: Signals) -> Iterator[CarChange]:
     """What is turned, opened or shut now.
 
     Args:
-        reaction: kind of the driver's reaction on the road (``traffic.base.Event``).
-    """
+        reaction: kind of the driver's reaction on the road (``traffic.base.Event``)."""
     if reaction == WAKES_UP and signals[CALL.PHONE] == "HAND":
         yield CarChange(0.0, CALL.PHONE.path, "AWAY")
     elif reaction == CLEARS_VIEW:
@@ -99,8 +98,7 @@ class Car:
             with_air: whether air, glass, seats and tyres are put back too.
 
         Returns:
-            The car, and the moment as that car has it.
-        """
+            The car, and the moment as that car has it."""
         way = timedelta(seconds=now.time_s - self.departure_s)
         earlier = now.earlier(way)
         cockpit = self.cockpit.freshened(departed, earlier.surroundings, way, with_air=with_air)
@@ -119,8 +117,7 @@ class Car:
             traffic: the drive, at its newest state.
             passed: the states since the previous moment.
             events: what happened on the road meanwhile.
-            dt_s: seconds since the previous moment; 0 for the first.
-        """
+            dt_s: seconds since the previous moment; 0 for the first."""
         driving = traffic.state
         if self.signs is not None:
             driving, passed = self.signs.on(driving), tuple(map(self.signs.on, passed))
@@ -207,8 +204,7 @@ def with_cause(errands: Iterable[Errand], since_s: float, now_s: float, ringing:
     Args:
         errands: all of them, by simulation time.
         since_s: the previous instant.
-        ringing: who calls now; empty if nobody does.
-    """
+        ringing: who calls now; empty if nobody does."""
 
     def is_due(errand: Errand) -> bool:
         return since_s + 1e-6 < errand.at_s <= now_s + 1e-6

@@ -144,8 +144,7 @@ class CoSimulation:
     def shadow(self) -> CoSimulation:
         """An exact copy with nobody at its cockpit, to be driven along with this one.
 
-        It gets a simulation of its own only when a request is made to this road. Close it first.
-        """
+        It gets a simulation of its own only when a request is made to this road. Close it first."""
         return CoSimulation(self.traffic.shadow(), self.car.copy(), self.moment)
 
     def close(self) -> None:
@@ -177,8 +176,7 @@ def couple(
         links: the best available link over time, in seconds after departure.
         errands: what people aboard ask for, in seconds after departure.
         trailer: whether the car tows one.
-        attention: whether the driver's can be taken, as the plan of the drive says (``EgoPlan.attention``).
-    """
+        attention: whether the driver's can be taken, as the plan of the drive says (``EgoPlan.attention``)."""
     state, geo = traffic.state, Geo()
     car = Car(
         cockpit,

@@ -15,8 +15,7 @@ def is_blank(value: object, choices: Collection[object] = ()) -> bool:
 
     Args:
         choices: the argument's own words. One of them that is written in another way, as ``None`` for ``none``, is
-            not blank: it may be meant.
-    """
+            not blank: it may be meant."""
     match value:
         case None:
             return True

@@ -84,8 +84,7 @@ def as_json(values: object) -> str:
 
     Raises:
         TypeError: something in them is nothing that a file can hold.
-        RecursionError: they are nested too deeply.
-    """
+        RecursionError: they are nested too deeply."""
     return json.dumps(values, default=_plain)
 
 

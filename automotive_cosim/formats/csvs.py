@@ -36,8 +36,7 @@ def read_packed_csv(path: Path) -> Iterator[dict[str, str]]:
     Raises:
         OSError: it cannot be read.
         ValueError: it is no such table, or has too many cells.
-        LookupError: a row lacks a column, once that is asked for.
-    """
+        LookupError: a row lacks a column, once that is asked for."""
     if not path.is_file():
         return
     left = bounds.CELLS

@@ -53,8 +53,7 @@ def read_json(path: Path, most_values: int | None = None) -> Any:
 
     Raises:
         OSError: it cannot be read.
-        ValueError: it is not JSON, or holds more values.
-    """
+        ValueError: it is not JSON, or holds more values."""
     return parse_json(read_unpacked(path), most_values)
 
 
@@ -63,8 +62,7 @@ def read_unpacked(path: Path) -> bytes:
 
     Raises:
         OSError: it cannot be read.
-        ValueError: it is larger.
-    """
+        ValueError: it is larger."""
     data = bytearray()  # grows with the file: reading a gigabyte at once would reserve it
     with opened(path) as file:
         while chunk := file.read(bounds.CHUNK_BYTES):
@@ -79,8 +77,7 @@ def read_json_lines(path: Path) -> list[Any]:
 
     Raises:
         OSError: it cannot be read.
-        ValueError: a line is not JSON or too long, or all together hold too many values.
-    """
+        ValueError: a line is not JSON or too long, or all together hold too many values."""
     with opened(path) as file:
         return list(json_lines(file))
 
@@ -90,8 +87,7 @@ def read_whole_lines(path: Path) -> list[Any]:
 
     Raises:
         OSError: it cannot be read.
-        ValueError: as ``read_json_lines``.
-    """
+        ValueError: as ``read_json_lines``."""
     with opened(path, growing=True) as file:
         return list(json_lines(file, growing=True))
 
@@ -105,8 +101,7 @@ def json_lines(file: IO[bytes], most_values: int | None = None, *, growing: bool
 
     Raises:
         OSError: it cannot be read.
-        ValueError: a line is not JSON or too long, or all together hold too many values.
-    """
+        ValueError: a line is not JSON or too long, or all together hold too many values."""
     left = bounds.VALUES if most_values is None else most_values
     while line := file.readline(bounds.LINE_BYTES + 1):
         if len(line) > bounds.LINE_BYTES:

@@ -178,8 +178,7 @@ class Tractor(Incident):
 class Pedestrians(Incident):
     """People walk from the end of one edge to the start of another, over the crossings between them.
 
-    The network needs sidewalks and crossings (``netconvert --sidewalks.guess --crossings.guess``).
-    """
+    The network needs sidewalks and crossings (``netconvert --sidewalks.guess --crossings.guess``)."""
 
     kind: Literal["pedestrians"] = "pedestrians"
     from_edge: EdgeId
@@ -324,8 +323,7 @@ class ScriptedVehicle(Incident):
 class EmergencyVehicle(EgoIncident):
     """An ambulance with blue lights comes up from behind on the ego's route, or a plain van as fast.
 
-    Other drivers form a corridor for it only if ``[sumo] lateral_resolution_m`` enables SUMO's sublane model.
-    """
+    Other drivers form a corridor for it only if ``[sumo] lateral_resolution_m`` enables SUMO's sublane model."""
 
     kind: Literal["emergency"] = "emergency"
     behind_m: Annotated[float, Gt(0)] = 250.0

@@ -34,8 +34,7 @@ class LimitedProcesses:
 
         Args:
             path: file or folder of strangers.
-            cost: what one call may take; by default what a bundle may.
-        """
+            cost: what one call may take; by default what a bundle may."""
         self._path = path
         most = cost or BUNDLE
         size = path.stat().st_size if is_file(path) else sum(map(_bytes, path.rglob("*")))

@@ -113,8 +113,7 @@ def link_at(timeline: Sequence[LinkAt], since_departure_s: float) -> str:
 
     Args:
         timeline: entries in the order of their ``at_s``.
-        since_departure_s: seconds after the ego's departure.
-    """
+        since_departure_s: seconds after the ego's departure."""
     index = bisect_right([entry.at_s for entry in timeline], since_departure_s) - 1
     return timeline[index].best if index >= 0 else LINKS[-1]
 
@@ -124,8 +123,7 @@ def weather_at(timeline: Sequence[WeatherAt], since_departure_s: float) -> Weath
 
     Args:
         timeline: entries in the order of their ``at_s``, at least one.
-        since_departure_s: seconds after the ego's departure.
-    """
+        since_departure_s: seconds after the ego's departure."""
     index = bisect_right([entry.at_s for entry in timeline], since_departure_s) - 1
     return timeline[max(index, 0)].weather
 

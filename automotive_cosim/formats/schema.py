@@ -32,8 +32,7 @@ def documented(kind: type, *, null: bool = False) -> Json:
     """The schema with descriptions from the docstrings of classes and fields; requires the source code.
 
     Args:
-        null: whether an absent value may also be written as ``null``, which TOML does not have.
-    """
+        null: whether an absent value may also be written as ``null``, which TOML does not have."""
     made: Json = adapter(kind).json_schema(schema_generator=_Documented if null else _WithoutNull)
     return made
 

@@ -13,8 +13,7 @@ def shipped_table(package: str, name: str) -> dict[str, Any]:
 
     Args:
         package: below ``automotive_cosim``, as ``traffic``.
-        name: the file's.
-    """
+        name: the file's."""
     return tomllib.loads(files(f"automotive_cosim.{package}").joinpath(name).read_text("utf-8"))
 
 

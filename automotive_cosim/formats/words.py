@@ -61,8 +61,7 @@ def expected(schemas: Sequence[Json], root: Json) -> str:
 
     Args:
         schemas: the ``members`` that it may fit.
-        root: the schema in which references are resolved.
-    """
+        root: the schema in which references are resolved."""
     return " or ".join(dict.fromkeys(_one(schema, root) for schema in schemas))
 
 

@@ -39,8 +39,7 @@ def make_folder(folder: Path, name: str = "") -> Path:
 
     Raises:
         UserError: a part of the name is a link.
-        OSError: it cannot be made.
-    """
+        OSError: it cannot be made."""
     path = beneath(folder, name)
     path.mkdir(parents=True, exist_ok=True)
     return path
@@ -68,8 +67,7 @@ def drafted(path: Path) -> Iterator[IO[bytes]]:
 
     Raises:
         UserError: another program is drafting it.
-        OSError: it cannot be written; the error names the file.
-    """
+        OSError: it cannot be written; the error names the file."""
     draft = f".{secrets.token_hex(8)}.part"
     try:
         home = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
@@ -113,8 +111,7 @@ def locked(path: Path, what: object) -> Iterator[None]:
 
     Raises:
         UserError: another program holds it, or it is a link.
-        OSError: it cannot be made.
-    """
+        OSError: it cannot be made."""
     with _alone(path, what):
         try:
             yield
@@ -134,8 +131,7 @@ def growing(path: Path, *, anew: bool = False) -> FileIO:
 
     Raises:
         UserError: another program is writing it, or it is a link.
-        OSError: it cannot be opened.
-    """
+        OSError: it cannot be opened."""
     if anew and not is_being_written(path):
         remove(path)
     file = _alone(path, path)
@@ -204,8 +200,7 @@ def copy(source: Path, target: Path, most_bytes: int) -> int:
 
     Raises:
         UserError: it is larger.
-        OSError: it cannot be read, is no regular file, or cannot be written.
-    """
+        OSError: it cannot be read, is no regular file, or cannot be written."""
     size = 0
     with open_file(source) as given, drafted(target) as file:
         while piece := given.read(bounds.CHUNK_BYTES):
@@ -229,8 +224,7 @@ def appearing(out: Path, *, replaces: bool = False) -> Iterator[Path]:
     Raises:
         UserError: another program is making it, or there is something else by then.
         OSError: it cannot be written.
-        Errors of the block and these name the folder, or what would be in it, where it was being made.
-    """
+        Errors of the block and these name the folder, or what would be in it, where it was being made."""
     # Named before it is made, so that a signal between the two leaves nothing.
     home = out.absolute().parent
     scratch = home / f".{out.name}-{secrets.token_hex(8)}"

@@ -7,14 +7,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import NamedTuple
 
-from automotive_cosim.contracts import (
-    KMH_PER_MPS,
-    STANDING_BELOW_MPS,
-    DrivingState,
-    GpsFix,
-    RoadHere,
-    Weather,
-)
+from automotive_cosim.contracts import KMH_PER_MPS, STANDING_BELOW_MPS, DrivingState, GpsFix, RoadHere, Weather
 from automotive_cosim.geo.place import Place
 from automotive_cosim.geo.rulefacts import CONDITIONS, RuleFacts, Test
 from automotive_cosim.geo.rules import TOPICS, Jurisdiction, Rule, Value
@@ -170,8 +163,7 @@ def limits(place: Place, facts: RuleFacts) -> Iterator[AppliedRule]:
 
     A limit that lowers signs is ruled out by its own layer only: fog also slows a street with a city's limit. On a
     road of ``OWN_LAW``, rules about its class come before all others, even those of a city; without one, no limit
-    is certain.
-    """
+    is certain."""
     own = facts.road_class in OWN_LAW
     named = own and any(
         _names(rule, facts.road_class) and rule.may_apply(facts) is not False

@@ -127,14 +127,7 @@ def _rules(row: Mapping[str, str], unit: str) -> Iterator[Rule]:
 
 
 def _rule(
-    code: str,
-    topic: str,
-    text: str,
-    cases: tuple[Case, ...],
-    status: Status,
-    *,
-    unit: str = "",
-    name: str = "",
+    code: str, topic: str, text: str, cases: tuple[Case, ...], status: Status, *, unit: str = "", name: str = ""
 ) -> Rule:
     as_of, law = _READ if status is Status.SECONDARY else _WRITTEN
     return Rule(f"{code}.{name or topic}", topic, text, law, as_of, status, cases, unit)

@@ -40,8 +40,7 @@ def binding(road: RoadHere, default: AppliedRule | None, reduced: Sequence[Appli
 
     Args:
         default: the legal limit for it, if it is certain.
-        reduced: lower limits under conditions.
-    """
+        reduced: lower limits under conditions."""
     here = road.limit
     signed = here.is_posted
     found: list[BindingLimit] = []

@@ -17,13 +17,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Protocol
 
-from automotive_cosim.contracts import (
-    KMH_PER_MPS,
-    NO_LIMIT,
-    STANDING_BELOW_MPS,
-    DrivingState,
-    Limit,
-)
+from automotive_cosim.contracts import KMH_PER_MPS, NO_LIMIT, STANDING_BELOW_MPS, DrivingState, Limit
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Rule, Status
@@ -134,8 +128,7 @@ def violations(states: Iterable[Observed]) -> tuple[Violation, ...]:
     """The violations, ordered by their beginning.
 
     Args:
-        states: a drive in chronological order, e.g. the moments of an episode.
-    """
+        states: a drive in chronological order, e.g. the moments of an episode."""
     open_runs: dict[tuple[ViolationKind, str, str], list[tuple[float, _Breach]]] = {}
     closed: list[list[tuple[float, _Breach]]] = []
     for state in states:
@@ -203,8 +196,7 @@ def limit_at(context: GeoContext, driving: DrivingState | None = None) -> Limit:
 
     Args:
         context: place, sky and weather.
-        driving: a state near that instant, on whose road the limit is wanted; None takes the context's own.
-    """
+        driving: a state near that instant, on whose road the limit is wanted; None takes the context's own."""
     elsewhere = driving is not None and _road_of(driving) != _road_of(context.driving)
     bound = (replace(context, driving=driving) if driving is not None and elsewhere else context).binding_limit
     return NO_LIMIT if bound is None else bound.limit

@@ -19,8 +19,7 @@ class Modem:
     """One modem on one drive: offline in tunnels, back a few seconds after; 5G where the network says built-up.
 
     Args:
-        timeline: the best available link, by seconds since departure.
-    """
+        timeline: the best available link, by seconds since departure."""
 
     def __init__(self, timeline: tuple[LinkAt, ...] = ()) -> None:
         self._timeline = timeline
@@ -31,8 +30,7 @@ class Modem:
 
         Args:
             dt_s: seconds since the previous reading.
-            since_departure_s: the present time on the timeline.
-        """
+            since_departure_s: the present time on the timeline."""
         best = link_at(self._timeline, since_departure_s)
         self._reachable_s = 0.0 if driving.road.in_tunnel or best == LINKS[0] else self._reachable_s + dt_s
         if self._reachable_s < ATTACH_S:

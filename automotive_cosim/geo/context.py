@@ -78,8 +78,7 @@ def can_matter(topic: str, now: RuleFacts, air_c: float | None) -> bool:
 class GeoContext:
     """Place, road, law, sky and weather at one instant. States facts and rules; judges nothing.
 
-    It holds its inputs; what follows from them is computed on first use, since most instants need little.
-    """
+    It holds its inputs; what follows from them is computed on first use, since most instants need little."""
 
     driving: DrivingState
     """Source of road, traffic and motion; its position is not used."""

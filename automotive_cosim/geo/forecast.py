@@ -77,8 +77,7 @@ FOG_FROM_PCT, FOG_WIND_BELOW_KMH = 93.0, 8.0
 class Climate:
     """Draws weather from the month's normals of the nearest station. Each seed has one weather per hour.
 
-    Over many seeds, temperature, rain and humidity average to the normals.
-    """
+    Over many seeds, temperature, rain and humidity average to the normals."""
 
     def __init__(self, seed: int, within_km: float = NEAR_KM) -> None:
         """Draws by ``seed``; a station farther away than ``within_km`` does not count."""
@@ -176,8 +175,7 @@ class OpenMeteo:
     Args:
         fallback: answers instead.
         url: of the service.
-        timeout_s: how long to wait for it, wall time.
-    """
+        timeout_s: how long to wait for it, wall time."""
 
     def __init__(self, fallback: _WeatherSource, url: str = OPEN_METEO_URL, timeout_s: float = TIMEOUT_S) -> None:
         self._fallback = fallback

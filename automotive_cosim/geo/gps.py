@@ -37,8 +37,7 @@ class Gps:
     Args:
         rng: source of its noise; three normal draws per reading, with or without a fix.
         is_steady: whether its error stays the same while the car stands, as that of receivers with a static hold,
-            and comes over ``CORRELATION_S`` to that of other surroundings. Otherwise a parked car seems to move.
-    """
+            and comes over ``CORRELATION_S`` to that of other surroundings. Otherwise a parked car seems to move."""
 
     def __init__(self, rng: np.random.Generator, *, is_steady: bool = False) -> None:
         self._rng = rng
@@ -56,8 +55,7 @@ class Gps:
             dt_s: seconds since the previous reading.
 
         Returns:
-            None in a network without projection. Without a fix the last position, ``dt_s`` older.
-        """
+            None in a network without projection. Without a fix the last position, ``dt_s`` older."""
         if driving.lon_deg is None or driving.lat_deg is None:
             return None
         stands = driving.speed_mps < STANDING_BELOW_MPS

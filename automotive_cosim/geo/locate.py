@@ -15,8 +15,7 @@ class Geo:
     """Makes contexts. It has no state of a drive, so branches share it.
 
     Args:
-        folders: folders of the user's own rule files, which override the shipped ones.
-    """
+        folders: folders of the user's own rule files, which override the shipped ones."""
 
     def __init__(self, folders: Sequence[Path] = ()) -> None:
         self.atlas = Atlas(folders) if folders else shipped()

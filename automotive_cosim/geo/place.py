@@ -156,8 +156,7 @@ class Atlas:
 
     Args:
         folders: the user's own folders of rule files, the most important first; a file there replaces the
-            shipped one with the same code.
-    """
+            shipped one with the same code."""
 
     def __init__(self, folders: Sequence[Path] = ()) -> None:
         self._folders = tuple(folders)
@@ -185,8 +184,7 @@ class Atlas:
 
         Raises:
             UserError: not a position on earth.
-            UserError: a rule file of the country is invalid.
-        """
+            UserError: a rule file of the country is invalid."""
         check_position(lon_deg, lat_deg)
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
         zone = _zone_at(lon_deg, lat_deg)

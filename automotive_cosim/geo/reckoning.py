@@ -35,7 +35,7 @@ class Reckonable(Protocol):
 
     @property
     def driving(self) -> DrivingState:
-        """Source of compass and speedometer, and of whether the car is in a tunnel."""
+        """Source of compass and speedometer, of the road ahead and of whether the car is in a tunnel."""
         ...
 
     @property
@@ -103,8 +103,7 @@ def reckon(drive: Sequence[Reckonable], roads: Roads | None = None) -> Estimate 
 
     Args:
         drive: the drive in chronological order, back to the last fix; at least one instant.
-        roads: the map; with it, the position is kept on roads in the car's direction.
-    """
+        roads: the map; with it, the position is kept on roads in the car's direction."""
     if drive[-1].gps is None:
         return None
     start = next((index for index in reversed(range(len(drive))) if _has_fix(drive[index])), 0)

@@ -62,8 +62,7 @@ class RuleFacts:
 class RuleCondition:
     """One word of the ``when`` language.
 
-    ``takes`` is the type of the word's value, the argument of ``holds``; ``expects`` describes it in words.
-    """
+    ``takes`` is the type of the word's value, the argument of ``holds``; ``expects`` describes it in words."""
 
     expects: str
     takes: Any

@@ -117,8 +117,7 @@ class Rule:
 
         Returns:
             (value, certain). (None, True): it does not apply. If not certain, the facts do not determine the
-            case, and the value is the first possible one.
-        """
+            case, and the value is the first possible one."""
         for case in self.cases:
             holds = all_hold(case.when, facts)
             if holds is not False:

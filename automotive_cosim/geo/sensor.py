@@ -14,9 +14,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, IncidentKind, Sight
+from automotive_cosim.contracts import Connectivity, DrivingState, IncidentKind, Sight
 from automotive_cosim.geo.context import GeoContext
-from automotive_cosim.geo.reckoning import Roads, reckon
+from automotive_cosim.geo.reckoning import Reckonable, Roads, reckon
 from automotive_cosim.geo.rules import ASKED, TOPICS
 from automotive_cosim.geo.text import amount_of_speed, position
 from automotive_cosim.geo.weather import visibility_class
@@ -40,21 +40,8 @@ INCIDENT_WORDS = {
 """Incidents in words, besides jams, which have a line of their own, and schools, which the map knows."""
 
 
-class Known(Protocol):
+class Known(Reckonable, Protocol):
     """One instant as the sensor knows it; ``cosim.Moment`` is one."""
-
-    @property
-    def time_s(self) -> float: ...
-
-    @property
-    def driving(self) -> DrivingState:
-        """Source of compass, speedometer and the road ahead."""
-        ...
-
-    @property
-    def gps(self) -> GpsFix | None:
-        """The receiver's last report."""
-        ...
 
     @property
     def connectivity(self) -> Connectivity:
@@ -89,8 +76,7 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
     Args:
         drive: the drive so far in chronological order, back to the last fix; at least one instant.
         with_position: whether it may say where the car is.
-        roads: the map for dead reckoning, if the car has one.
-    """
+        roads: the map for dead reckoning, if the car has one."""
     asked = frozenset(re.findall(r"[a-z]+", text.casefold()))
     if "blue" in asked:  # the light of an emergency vehicle is no lamp
         asked -= {"light", "lights"}
@@ -324,10 +310,7 @@ _SUBJECTS = (
         on_board=True,
     ),
     _Subject(
-        "position",
-        _set("position where location gps coordinates latitude longitude"),
-        _position,
-        on_board=True,
+        "position", _set("position where location gps coordinates latitude longitude"), _position, on_board=True
     ),
 )
 """What is of the moment is told first: an answer is cut off at its end."""

@@ -88,7 +88,6 @@ def sun_at(lon_deg: float, lat_deg: float, time: datetime) -> Sun:
     Args:
         lon_deg: WGS 84.
         lat_deg: WGS 84.
-        time: zone-aware.
-    """
+        time: zone-aware."""
     zenith_deg, azimuth_deg = zenith_and_azimuth(Observer(lat_deg, lon_deg), time, with_refraction=False)
     return Sun(float(90.0 - zenith_deg), float(azimuth_deg))

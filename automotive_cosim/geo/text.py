@@ -21,8 +21,7 @@ class Line:
     """One line of the text.
 
     ``source`` is the id of the rule it states, or ``place``, ``gps``, ``road``, ``motion``, ``sky``, ``weather``,
-    ``traffic`` or ``climate``.
-    """
+    ``traffic`` or ``climate``."""
 
     text: str
     source: str

@@ -154,8 +154,7 @@ def phenomena(weather: Weather) -> frozenset[str]:
     """The weather in the words of ``PHENOMENA``.
 
     A code and the measured values may each imply a phenomenon: visibility under one kilometre without precipitation
-    or dust is fog, and 7.6 mm of rain per hour is heavy rain, whatever the code says.
-    """
+    or dust is fog, and 7.6 mm of rain per hour is heavy rain, whatever the code says."""
     found = set(_of_code(weather.weather_code))
     if weather.visibility < FOG_BELOW_M and found.isdisjoint(("precipitation", "dust")):
         found.add("fog")

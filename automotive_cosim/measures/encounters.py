@@ -75,8 +75,7 @@ class PairOrder(StrEnum):
 class PairReading(NamedTuple):
     """Two vehicles at one instant. A measure that does not apply is None.
 
-    A named tuple, as there are many and one is made in a fifth of the time of a frozen dataclass.
-    """
+    A named tuple, as there are many and one is made in a fifth of the time of a frozen dataclass."""
 
     time_s: float
     vehicle: str
@@ -140,8 +139,7 @@ def pair_readings(
     Args:
         scenes: every instant, in order.
         ego: only pairs with this vehicle; None for all pairs.
-        thresholds: range, angles and reaction time.
-    """
+        thresholds: range, angles and reaction time."""
     before: RoadScene | None = None
     for scene in scenes:
         time_s, vehicles = scene
@@ -180,8 +178,7 @@ def as_csv(
 
     Args:
         rows: encounters or readings.
-        trials: the trial of each row, for a first column; None if they are all of one.
-    """
+        trials: the trial of each row, for a first column; None if they are all of one."""
     names = _names(kind)
     lines = (
         [*(trials or ())[number : number + 1], *(_plain(getattr(row, name)) for name in names)]

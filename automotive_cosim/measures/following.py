@@ -13,8 +13,7 @@ from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS, Thresholds
 def is_near(state: DrivingState) -> bool:
     """Whether the car is near a collision with the one in front: seconds away, and only hard braking avoids it.
 
-    Without the braking every gentle stop in a queue counts: who brakes from v with a is v / 2a from a collision.
-    """
+    Without the braking every gentle stop in a queue counts: who brakes from v with a is v / 2a from a collision."""
     leader = state.around.leader
     if leader is None or leader.time_to_collision_s is None:
         return False
@@ -48,8 +47,7 @@ def following_figures(
 
     Args:
         states: every step, in order.
-        thresholds: from when on it is critical.
-    """
+        thresholds: from when on it is critical."""
     ahead = [(state, other) for state in states if (other := state.around.leader) is not None]
     closing = [(other.gap_m, other.gap_m / ttc_s) for _, other in ahead if (ttc_s := _closing(other))]
     tet_s, tit_s2 = time_exposed([_ttc(state, state.around.leader) for state in states], thresholds.ttc_s)

@@ -53,8 +53,7 @@ def required_deceleration_mps2(
         leader_brakes_mps2: its deceleration, which it keeps up until it stands; the DRAC is the case of 0.
 
     Returns:
-        None if none is needed, or no gap is left.
-    """
+        None if none is needed, or no gap is left."""
     closing_mps = follower_mps - leader_mps
     if gap_m <= 0 or (closing_mps <= 0 and leader_brakes_mps2 <= 0) or follower_mps <= 0:
         return None
@@ -72,8 +71,7 @@ def crossing_time_to_collision_s(
 
     Args:
         first: metres to the point of crossing and metres per second of the one who reaches it first.
-        first_length_m: how much further the first must drive to leave it.
-    """
+        first_length_m: how much further the first must drive to leave it."""
     (first_m, first_mps), (second_m, second_mps) = first, second
     if first_mps <= 0 or second_mps <= 0:
         return None
@@ -86,8 +84,7 @@ def crossing_drac_mps2(second_m: float, second_mps: float, first_leaves_s: float
 
     Args:
         second_m: metres to the point of crossing of the one who reaches it second.
-        first_leaves_s: when the first leaves the point, seconds from now.
-    """
+        first_leaves_s: when the first leaves the point, seconds from now."""
     if second_mps <= 0 or second_m <= 0 or second_m / second_mps >= first_leaves_s:
         return None
     moving = 2 * (second_mps - second_m / first_leaves_s) / first_leaves_s
@@ -101,8 +98,7 @@ def swept_pet_s(
     """The PET by swept area, from that at the point where two paths cross.
 
     It counts from the first's rear leaving the other's path, half a width further on, to the second's front
-    reaching the first's path, half a width before; SUMO's SSM device has it so.
-    """
+    reaching the first's path, half a width before; SUMO's SSM device has it so."""
     return pet_s - second_width_m / 2 / first_mps - first_width_m / 2 / second_mps
 
 
@@ -122,8 +118,7 @@ def delta_v_mps(
     """Delta-v of oneself: both velocities become one, and the momentum stays.
 
     Args:
-        own_mps: own velocity, to the east and to the north.
-    """
+        own_mps: own velocity, to the east and to the north."""
     relative_mps = hypot(own_mps[0] - other_mps[0], own_mps[1] - other_mps[1])
     return other_kg / (own_kg + other_kg) * relative_mps
 
@@ -133,8 +128,7 @@ def time_exposed(times: Sequence[tuple[float, float | None]], threshold_s: float
 
     Args:
         times: simulation time and TTC at each step, in order; a step counts for the time since the one before.
-        threshold_s: the TTC up to which a step counts.
-    """
+        threshold_s: the TTC up to which a step counts."""
     tet_s = tit_s2 = 0.0
     for (before_s, _), (now_s, ttc_s) in pairwise(times):
         if ttc_s is not None and ttc_s <= threshold_s:

@@ -122,8 +122,7 @@ def prove(
     Raises:
         UserError: there is no such gate or task, or the folder cannot take the proofs.
         InfrastructureError: no worker becomes available.
-        KeyboardInterrupt: passed on; only the running proofs are lost.
-    """
+        KeyboardInterrupt: passed on; only the running proofs are lost."""
     found: list[Proof] = []
 
     def rounds(plan: ProofPlan, store: Store[Proof]) -> Iterator[Sequence[ProofJob]]:

@@ -127,8 +127,7 @@ def core(seen: OutcomesByHalf, fitted: Rasch, size: int = CORE_SIZE) -> tuple[st
 
     Suites and subsets get their shares of the eligible tasks: those of which ``LEAST_CONTESTANTS`` have tried each
     half. One after the other, the task is taken that raises the sum of the logarithms of the contestants'
-    information most (Fisher's, p (1 - p) of a half), so that whoever is known least gains most.
-    """
+    information most (Fisher's, p (1 - p) of a half), so that whoever is known least gains most."""
     tasks = [CATALOGUE[task_id] for task_id in _tasks(seen)]
     eligible = [task for task in tasks if all(_is_eligible(seen, f"{task.id}/{h}") for h in task.halves)]
     abilities = np.array(list(fitted.abilities.values()))
@@ -248,8 +247,7 @@ def outcomes_of(folders: Sequence[Path], name: str = "") -> dict[str, Outcomes]:
 
     Args:
         folders: result folders of ``eval``, run on the catalogue as it is.
-        name: what all their contestants together are called; by default, each by its agent and model.
-    """
+        name: what all their contestants together are called; by default, each by its agent and model."""
     counts: dict[str, dict[str, list[int]]] = defaultdict(lambda: defaultdict(lambda: [0, 0]))
     for folder in folders:
         for row in read_trials(folder).values():
@@ -273,8 +271,7 @@ def contestant(agent: str, model: str) -> str:
 def play(tasks: Sequence[str], suite: str, record: OutcomesByHalf, seed: int = 0) -> Iterator[tuple[str, Outcomes]]:
     """Plays each half that ``BUILT_IN`` have not tried, all of them from the same hand-over.
 
-    A half whose situation does not come about with this seed is left out.
-    """
+    A half whose situation does not come about with this seed is left out."""
     names = [contestant(agent, make_agent(agent).model) for agent in BUILT_IN]
     halves = [(task_id, half) for task_id in choose(tasks, suite) for half in CATALOGUE[task_id].halves]
     halves = [each for each in halves if not _known(record, "/".join(each)).keys() >= set(names)]

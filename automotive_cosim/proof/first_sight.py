@@ -166,8 +166,7 @@ def undeclared(
     """What differs between two first observations though nothing declared frees it, in words.
 
     Args:
-        differs: the declared kinds of difference.
-    """
+        differs: the declared kinds of difference."""
     free = frozenset[Facet]().union(*(FREED[kind] for kind in differs))
     seen, as_well = (dict(_facts(*each)) for each in (one, other))
     for name, (causes, _) in {**seen, **as_well}.items():

@@ -99,8 +99,7 @@ def measure(
     Args:
         tasks: ids of the catalogue, or anything else that ``run.choosing.choose`` accepts.
         seeds: the seeds.
-        suite: the suite that the tasks are chosen from, or ``all``.
-    """
+        suite: the suite that the tasks are chosen from, or ``all``."""
     record = dict(read(path))
     halves = [(task_id, half) for task_id in choose(tasks, suite) for half in CATALOGUE[task_id].halves]
     halves.sort(key=_traffic)

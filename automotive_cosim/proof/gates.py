@@ -213,14 +213,13 @@ def coupled(ground: Ground, right: Played) -> Wrong:
     """Turns each switch that the goal does not allow on its own, after the reference solution.
 
     All are tried, so that those which the car couples to the goal are among them. One that the car refuses or that
-    changes nothing is skipped.
-    """
-    before, start, end = right.moments[:-1], right.moments[0], right.moments[-1]
+    changes nothing is skipped."""
+    before, first, end = right.moments[:-1], right.moments[0], right.moments[-1]
     done = replayed(ground.episode.at_hand_over, right.given, before)
     for path in sorted(set(ACTUATORS) - ground.half.allowed_writes - may_part(ground.half)):
         car = done.copy()
         value = mutations.another_value(named(path), car.signals[named(path)])
-        if value == start.commands[path]:  # sets back what followed, which is free: `uncoupled`
+        if value == first.commands[path]:  # sets back what followed, which is free: `uncoupled`
             continue
         if car.command(named(path), value).code is not FeedbackCode.OK:
             continue
@@ -233,7 +232,7 @@ def coupled(ground: Ground, right: Played) -> Wrong:
 def uncoupled(ground: Ground, right: Played) -> Wrong:
     """Sets back what followed a command of the reference solution without being asked for, and parts what couples
     two commands before or after it; what breaks the goal itself or what the car refuses is skipped."""
-    before, start, end = right.moments[:-1], right.moments[0], right.moments[-1]
+    before, first, end = right.moments[:-1], right.moments[0], right.moments[-1]
     aims = frozenset().union(*(record.aims for record in right.given))
     followed = {
         path
@@ -243,13 +242,13 @@ def uncoupled(ground: Ground, right: Played) -> Wrong:
     done = replayed(ground.episode.at_hand_over, right.given, before)
     for what, paths in [*((path, {path}) for path in sorted(followed)), ("all that followed", followed)]:
         car = done.copy()
-        _give(car, {path: start.commands[path] for path in paths}, end, before[-1])
-        if ground.half.goal.holds(start, last := _as_left(car, end), (*before, last)) and not _wins(
+        _give(car, {path: first.commands[path] for path in paths}, end, before[-1])
+        if ground.half.goal.holds(first, last := _as_left(car, end), (*before, last)) and not _wins(
             ground, right, (*before, last)
         ):
             yield f"fails once {what} is as before, which only followed"
     for switch in sorted(may_part(ground.half)):
-        if start.commands[switch]:
+        if first.commands[switch]:
             car = ground.episode.at_hand_over.copy()
             car.command(named(switch), False)
             car = replayed(car, right.given, before)
@@ -270,8 +269,8 @@ def _as_left(car: Cockpit, end: Moment) -> Moment:
 
 def optional(ground: Ground, right: Played) -> Wrong:
     """Fills in whatever an alert of the reference solution may take besides, with what is true."""
-    start, end = right.moments[0], right.moments[-1]
-    given = end.commands["alerts"][len(start.commands["alerts"]) :]
+    first, end = right.moments[0], right.moments[-1]
+    given = end.commands["alerts"][len(first.commands["alerts"]) :]
     limit = end.context.binding_limit
     advice = round(end.driving.speed_mps * KMH_PER_MPS) if limit is None else round(limit.kmh)
     for at, alert in enumerate(given):
@@ -281,7 +280,7 @@ def optional(ground: Ground, right: Played) -> Wrong:
             if "speed_kmh" in fields and not _may_advise(ground, alert["kind"], advice):
                 continue
             alerts = [*end.commands["alerts"]]
-            alerts[len(start.commands["alerts"]) + at] = {**alert, **fields}
+            alerts[len(first.commands["alerts"]) + at] = {**alert, **fields}
             last = replace(end, commands={**end.commands, "alerts": alerts})
             if not _wins(ground, right, (*right.moments[:-1], last)):
                 yield f"fails if the {alert['kind']} alert has {fields} as well"
@@ -353,9 +352,9 @@ def lawful(ground: Ground, right: Played) -> Wrong:
     for found in violations(right.moments):
         if found.status is Status.VERIFIED and (found.kind, found.rule) not in anyway:
             yield f"breaks {found.rule}: {found.text}"
-    start, end = right.moments[0], right.moments[-1]
-    engaged = end.signals[ADAS.CRUISE_ACTIVE.path] and not start.signals[ADAS.CRUISE_ACTIVE.path]
-    limit, set_kmh = start.context.binding_limit, end.signals[ADAS.CRUISE_SPEED.path]
+    first, end = right.moments[0], right.moments[-1]
+    engaged = end.signals[ADAS.CRUISE_ACTIVE.path] and not first.signals[ADAS.CRUISE_ACTIVE.path]
+    limit, set_kmh = first.context.binding_limit, end.signals[ADAS.CRUISE_SPEED.path]
     if engaged and limit is not None and limit.status is Status.VERIFIED and set_kmh > limit.kmh + EQUAL_UP_TO_KMH:
         yield f"has cruise control hold {set_kmh:g} km/h where the limit is {limit.kmh:.0f} ({limit.rule})"
 

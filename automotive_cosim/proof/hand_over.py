@@ -143,8 +143,7 @@ class Ground:
             coarse: in steps of a second, which is quicker and other traffic.
 
         Raises:
-            TriggerNotReachedError, TrafficError: see ``SituationFinder.find``.
-        """
+            TriggerNotReachedError, TrafficError: see ``SituationFinder.find``."""
         finder = SituationFinder(
             EpisodeSpec(task.id, half_name, scenario, seed=seed, conditions=SEEING), simulations, task=task
         )
@@ -248,12 +247,12 @@ HARMLESS = frozenset({
 def is_lost(episode: Episode) -> bool:
     """Whether an episode can no longer succeed, because of lasting side effects or its deadline."""
     half = episode.instance.half
-    start, now = episode.moments[0], episode.moments[-1]
-    if any(now.commands[key] != start.commands[key] for key in SENT - half.allowed_writes):
+    first, now = episode.moments[0], episode.moments[-1]
+    if any(now.commands[key] != first.commands[key] for key in SENT - half.allowed_writes):
         return True
-    if now.time_s - start.time_s <= half.deadline.seconds:
+    if now.time_s - first.time_s <= half.deadline.seconds:
         return False
-    return half.declares is not GoalStatus.COMPLETE or not half.goal.holds(start, now, episode.moments)
+    return half.declares is not GoalStatus.COMPLETE or not half.goal.holds(first, now, episode.moments)
 
 
 def would_lose(episode: Episode, action: Action) -> bool:

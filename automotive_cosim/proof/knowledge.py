@@ -114,8 +114,7 @@ class _Evidence:
     def tells(self, said: Any, instead: Any) -> bool:
         """Whether it has been seen that something is so, and not otherwise.
 
-        A text that is seen with the other value in its place as well is no sign: it is one of a menu.
-        """
+        A text that is seen with the other value in its place as well is no sign: it is one of a menu."""
         match said, instead:
             case (bool() | None | _Setting(bool()), _) | (_, None):
                 return True  # a switch: on the screen of what it switches, as is that there is none
@@ -169,8 +168,7 @@ def unknown(
         drawn: the parameters of the instance.
         steps: the reference solution's steps, the hand-over first.
         moves: for each action, the number of the move that it belongs to, in the half's order; None for what
-            belongs to none.
-    """
+            belongs to none."""
     tellings = tuple(_open_in((half.start, half.says, [topic.reply for topic in half.topics], template)))
     seen, guessed = _Evidence(), set[tuple[int, str]]()
     seen.add(template.format_map(drawn.parameters))

@@ -17,18 +17,18 @@ SIBLINGS = (("Driver", "Passenger"), ("Front", "Rear"), ("Left", "Right"), ("Row
 """Words of signal paths that are swapped: the other seat, window, side, row or beam."""
 
 
-def undone(start: Moment, moments: Sequence[Moment], half: Half) -> tuple[Moment, ...]:
+def undone(first: Moment, moments: Sequence[Moment], half: Half) -> tuple[Moment, ...]:
     """The end state with the goal's own writes reverted."""
-    values = {key: start.commands[key] for key in half.goal.writes if key in start.commands}
+    values = {key: first.commands[key] for key in half.goal.writes if key in first.commands}
     return put(moments, values)
 
 
-def near_misses(start: Moment, moments: Sequence[Moment], half: Half) -> Iterator[tuple[str, tuple[Moment, ...]]]:
+def near_misses(first: Moment, moments: Sequence[Moment], half: Half) -> Iterator[tuple[str, tuple[Moment, ...]]]:
     """End states with the goal's change in another place, in the wrong direction, or with another value."""
     end = moments[-1]
     writes = half.goal.writes
     for key in sorted(writes):
-        before, after = start.commands.get(key), end.commands.get(key)
+        before, after = first.commands.get(key), end.commands.get(key)
         if before == after or key in _by_effect(half.goal):
             continue
         if key in ACTUATORS:

@@ -101,8 +101,7 @@ class Prover:
 
         Args:
             chosen: the gates to try.
-            simulations: warm ones, which the caller closes; by default its own.
-        """
+            simulations: warm ones, which the caller closes; by default its own."""
         self._chosen = frozenset(chosen)
         self._simulations = simulations or Simulations(count_limit=SIMULATIONS)
         self._owns_simulations = simulations is None
@@ -118,8 +117,7 @@ class Prover:
         Args:
             task_id: id in the catalogue.
             seed: determines traffic, drive, phrasing and parameters.
-            after: another task, which must give the same trace after this one as before; empty skips this gate.
-        """
+            after: another task, which must give the same trace after this one as before; empty skips this gate."""
         found = _Findings()
         broken: Exception | None = None
         grounds: dict[str, Ground] = {}

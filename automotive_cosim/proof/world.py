@@ -24,8 +24,7 @@ FOG_FROM_HUMIDITY_PCT = 95.0
 def implausible(moment: Moment) -> Iterator[str]:
     """What the weather of a moment contradicts, in words: itself, or the climate of its place, month and hour.
 
-    A place without a station within 250 km is only held against itself.
-    """
+    A place without a station within 250 km is only held against itself."""
     weather, driving = moment.weather, moment.driving
     yield from _contradictions(weather)
     if driving.lon_deg is None or driving.lat_deg is None:

@@ -67,8 +67,7 @@ def counts(found: Coverage, successes: int) -> BundleCounts:
     """The counts of an evaluation.
 
     Args:
-        found: how much of its plan has been run.
-    """
+        found: how much of its plan has been run."""
     return BundleCounts(found.planned, found.judged, successes, found.errors, len(found.not_run))
 
 

@@ -27,8 +27,7 @@ def drive_problems(folder: Path, row: DriveTrialRow, told: Json) -> Iterator[Pro
     """Everything that is wrong with a judged drive.
 
     Args:
-        folder: an evaluation's or an unpacked bundle's.
-    """
+        folder: an evaluation's or an unpacked bundle's."""
     *steps, last = read_trace(folder, row.id)
     file = trace_file(folder, row.id).relative_to(folder).as_posix()
     if [step["step"] for step in steps] != list(range(len(steps))) or "result" not in last:

@@ -76,8 +76,7 @@ def check_trial(folder: Path, job: TrialSetup, row: TrialRow) -> tuple[Problem, 
     """Everything that is wrong with a trial.
 
     Args:
-        folder: an evaluation's or an unpacked bundle's.
-    """
+        folder: an evaluation's or an unpacked bundle's."""
     try:
         if large := _too_large(folder, job):
             return (large,)

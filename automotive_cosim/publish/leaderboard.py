@@ -166,8 +166,7 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
     """Writes the page; see ``board``.
 
     Returns:
-        The bundles that were left out, and why.
-    """
+        The bundles that were left out, and why."""
     return board(folder, out, workers=workers, mixed=mixed).left_out
 
 

@@ -46,8 +46,7 @@ def differences(
         where: place of the object in it.
         found: the object, as JSON.
         expected: what it should be, as JSON.
-        source: where the expected values come from.
-    """
+        source: where the expected values come from."""
     found = _of_today(found)
     for name in names:
         steps = _first(found.get(name), expected.get(name), (name,))

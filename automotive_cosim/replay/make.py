@@ -100,8 +100,7 @@ def provider_body(form: str, text: str) -> Json:
     """An answer as the provider of a format sends it.
 
     Args:
-        text: the answer as the agent reads it.
-    """
+        text: the answer as the agent reads it."""
     api = FORMATS[form].api
     if api is None:
         return completion(text, 7, 3)

@@ -17,8 +17,7 @@ from automotive_cosim.run.rows import EpisodeRow
 def answer(results: Results) -> str:
     """Who is better by how much, on how many pairs or episodes, and how many ended in an error.
 
-    References and negative controls are not ranked, unless there is nobody else.
-    """
+    References and negative controls are not ranked, unless there is nobody else."""
     told = []
     if results.rows:
         told.append(_ranking(results.shared()))

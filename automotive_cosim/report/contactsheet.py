@@ -24,8 +24,7 @@ def contact_sheet(cockpit: Cockpit, width: int = 400) -> Image.Image:
     """The sheet, six screens per row, each by day and next to it by night.
 
     Args:
-        width: of each screen in pixels.
-    """
+        width: of each screen in pixels."""
     return sheet(tuple(pictures(cockpit)), COLUMNS, width)
 
 
@@ -34,8 +33,7 @@ def sheet(tiles: Sequence[SheetTile], columns: int, width: int = 400) -> Image.I
 
     Args:
         columns: tiles per row.
-        width: of each screen in pixels.
-    """
+        width: of each screen in pixels."""
     shown = [picture.size for _, picture in tiles if picture is not None] or [(16, 9)]
     size = width, round(width * shown[0][1] / shown[0][0])
     step_x, step_y = width + GAP, size[1] + CAPTION_HEIGHT + GAP

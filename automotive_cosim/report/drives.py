@@ -196,8 +196,7 @@ def score_change(judged: Sequence[tuple[DriveTrialRow, DriveTrialRow]]) -> Score
     """Compares the scores of drives that were judged both times; None without any.
 
     Args:
-        judged: each drive before and after.
-    """
+        judged: each drive before and after."""
 
     def scores(picked: RowPairs) -> tuple[float, float]:
         before, after = (whole([pair[which] for pair in picked]).value for which in (0, 1))
@@ -558,8 +557,7 @@ def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, Chart]:
     Raises:
         OSError: they cannot be written.
         UserError: a trace cannot be read.
-        SetupError: the extra ``reports`` is not installed.
-    """
+        SetupError: the extra ``reports`` is not installed."""
     plots: dict[str, Chart] = {}
     for row in sorted(rows, key=lambda row: (row.value is None, row.value or 0.0)):
         found = None if row.score is None else timeline_of(folder, row.id)

@@ -56,8 +56,7 @@ class Side:
 def contrast(results: Results) -> tuple[Side, Side] | None:
     """An instance that the same agent solved with geo-context and not without; None if there is none.
 
-    Pairs that depend on place come first, then other safety tasks, each in the order of their ids.
-    """
+    Pairs that depend on place come first, then other safety tasks, each in the order of their ids."""
     rows = [row for row in results.rows if row.success is not None and _has_trace(results, row)]
     solved = {_key(row): row for row in rows if row.conditions.geo == "full" and row.success}
     found = [
@@ -112,8 +111,7 @@ def write_report(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not an evaluation's, has no episodes yet, or cannot be written.
-        SetupError: the extra ``reports`` is not installed.
-    """
+        SetupError: the extra ``reports`` is not installed."""
     require_plots()
     results = read_results(folder)
     if not results.rows and not results.drives:

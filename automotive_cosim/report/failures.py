@@ -25,13 +25,7 @@ from automotive_cosim.tasks import CATALOGUE
 SAME_SCREEN = 0.5
 """A touch that keeps at least this share of the elements has not led to another screen; our choice."""
 TOUCHES = frozenset(
-    {
-        ActionType.CLICK,
-        ActionType.DOUBLE_TAP,
-        ActionType.LONG_PRESS,
-        ActionType.INPUT_TEXT,
-        ActionType.SWIPE,
-    }
+    {ActionType.CLICK, ActionType.DOUBLE_TAP, ActionType.LONG_PRESS, ActionType.INPUT_TEXT, ActionType.SWIPE}
 )
 MISSED = frozenset({FeedbackCode.NO_SUCH_ELEMENT, FeedbackCode.NO_EFFECT})
 BARRED = frozenset({FeedbackCode.RESTRICTED, FeedbackCode.DISABLED})
@@ -87,8 +81,7 @@ def failure_class(row: EpisodeRow, lines: Sequence[Json]) -> FailureClass:
     """The class of an episode that was judged and not solved.
 
     Args:
-        lines: its trace, from ``read_trace``.
-    """
+        lines: its trace, from ``read_trace``."""
     try:
         task: Task = CATALOGUE[row.task]
         half = bind(task.half(row.half), row.parameters or {})

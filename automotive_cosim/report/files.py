@@ -15,8 +15,7 @@ def write_files(folder: Path, tables: Iterable[Table], plots: Iterable[Chart]) -
 
     Raises:
         OSError: they cannot be written.
-        SetupError: matplotlib is not installed.
-    """
+        SetupError: matplotlib is not installed."""
     for table in tables:
         for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
             write_whole(make_folder(folder, "tables") / f"{table.name}.{suffix}", text)

@@ -35,8 +35,7 @@ def speed_plot(path: Sequence[Sample], shown: int, width: int, height: int, scal
         shown: number of samples driven so far.
         width: in pixels.
         height: in pixels.
-        scale: pixels per logical pixel.
-    """
+        scale: pixels per logical pixel."""
     plot = _Plot([path], width * FINE, height * FINE, scale * FINE)
     plot.axes()
     plot.limits()
@@ -54,8 +53,7 @@ def speeds_plot(
         until_s: how far each is drawn, seconds since the hand-over.
         width: in pixels.
         height: in pixels.
-        scale: pixels per logical pixel.
-    """
+        scale: pixels per logical pixel."""
     plot = _Plot(list(paths.values()), width * FINE, height * FINE, scale * FINE)
     plot.axes()
     plot.limits()
@@ -153,8 +151,7 @@ class Film(Frames):
         """Nothing is written before the end.
 
         Args:
-            folder: the record's; if its road has been recorded by then, the film shows the other vehicles.
-        """
+            folder: the record's; if its road has been recorded by then, the film shows the other vehicles."""
         super().__init__(_pixels(COCKPIT))
         self._path = folder / FILM
 

@@ -101,8 +101,7 @@ class RoadPainter:
 
         Args:
             past: the drive so far, oldest first; the trail is red where it was above the limit.
-            avoid: boxes without street names.
-        """
+            avoid: boxes without street names."""
         here = past[-1]
         second = self._record.at(here.at_s)
         camera = Camera(here.x_m, here.y_m, here.heading_deg, METRES_PER_PIXEL)
@@ -124,8 +123,7 @@ class RoadPainter:
         """Draws the road with the drive going to the right, and on it several cars that set out as one.
 
         Args:
-            cars: where each is, by its colour; the first is the recorded one, among whose traffic all are shown.
-        """
+            cars: where each is, by its colour; the first is the recorded one, among whose traffic all are shown."""
         here = next(iter(cars.values()))
         second = self._record.at(here.at_s)
         camera = Camera(here.x_m, here.y_m, here.heading_deg - 90, METRES_PER_PIXEL)

@@ -73,8 +73,7 @@ def act_effects(folder: Path, trials: Mapping[str, str]) -> Table:
     """What each act of the trials changed of which that was measured.
 
     Args:
-        trials: their ids, with their names.
-    """
+        trials: their ids, with their names."""
     lines = tuple(
         (name, " and ".join(map(str, each.steps)), clock(each.at_s), each.act, each.effect, str(each.draws))
         for trial, name in trials.items()
@@ -144,8 +143,7 @@ def place_effect(results: Results) -> Table:
 def by_condition(results: Results) -> list[Table]:
     """Success by the values of each condition: a column for each value, and a row for each contestant.
 
-    A condition that is the same for all has no rows.
-    """
+    A condition that is the same for all has no rows."""
     return [_side_by_side(results, each) for each in TABLE]
 
 
@@ -201,10 +199,7 @@ def by_label(
     found = {value for row in results.rows for value in of(row)}
     values = [value for value in order if value in found] + sorted(found.difference(order))
     rows: list[TableRow] = [
-        (
-            value,
-            *(rate_cell(row for row in results.of(each) if value in of(row)) for each in results.contestants),
-        )
+        (value, *(rate_cell(row for row in results.of(each) if value in of(row)) for each in results.contestants))
         for value in values
     ]
     columns = (name.capitalize(), *(each.label for each in results.contestants))

@@ -56,8 +56,7 @@ class Frames(TrialObserver):
         """Nothing is collected yet.
 
         Args:
-            size: width and height of the screen in the film, in pixels.
-        """
+            size: width and height of the screen in the film, in pixels."""
         self.map: RoadMap | None = None
         """The roads; None before the hand-over."""
         self.came: tuple[EpisodeRow, EpisodeResult] | None = None

@@ -47,8 +47,7 @@ def sounded(folder: Path, step: int, number: int, uttered: Json) -> bytes:
     Raises:
         SetupError: there is none, and the extra ``voice`` is missing.
         UserError: that file is no WAV file.
-        InfrastructureError: the voice could not say it.
-    """
+        InfrastructureError: the voice could not say it."""
     path = sound(folder, step, number)
     if not path.is_file():
         return sounding(uttered["said"][:MOST_LETTERS], driver_snr_db(uttered["noise_db"]))
@@ -90,8 +89,7 @@ def level_plot(levels: Sequence[tuple[float, float]], said: Sequence[Json], widt
 
     Args:
         levels: seconds since the hand-over, and dB(A).
-        said: utterances, which get a mark each.
-    """
+        said: utterances, which get a mark each."""
     left, right, top, bottom = LEFT, width - RIGHT, TOP, height - BOTTOM
     end_s = max(1.0, levels[-1][0])
 

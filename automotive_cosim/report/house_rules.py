@@ -17,8 +17,7 @@ def house_rules(groups: Mapping[Contestant, Sequence[TrialRow]], name: str = "po
 
     Args:
         groups: the trials of each contestant, tasks or drives.
-        name: base name of the table's files.
-    """
+        name: base name of the table's files."""
     rows: list[TableRow] = []
     for each, every in groups.items():
         mine = [row for row in every if row.breaches is not None]

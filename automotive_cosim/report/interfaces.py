@@ -33,8 +33,7 @@ def interfaces(results: Results) -> Table:
     """What each interface costs and wins; no rows for who had one alone.
 
     Args:
-        results: with the same instances for every contestant, ``Results.shared``.
-    """
+        results: with the same instances for every contestant, ``Results.shared``."""
     groups = dict.fromkeys(each.under("interface", Interface.TOUCH) for each in results.contestants)
     rows: list[TableRow] = []
     for group in groups:

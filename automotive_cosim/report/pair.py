@@ -131,8 +131,7 @@ def sentence(sides: Sequence[PairSide]) -> str:
 def _from_hand_over(side: PairSide) -> list[FilmFrame]:
     """The frames without the approach; after the last step its words stay, and the last frame says the outcome.
 
-    The driver's words are above both screens, so the first frame goes without.
-    """
+    The driver's words are above both screens, so the first frame goes without."""
     frames: list[FilmFrame] = []
     for frame in side.frames.all():
         if frame.title == SAID:

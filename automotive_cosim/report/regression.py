@@ -36,8 +36,7 @@ class ComparedInstance:
     def kind(self) -> str:
         """``lost``, ``won``, ``solved``, ``not solved`` (both times), or ``error``: judged before and not now.
 
-        A drive is lost if its score fell and won if it rose.
-        """
+        A drive is lost if its score fell and won if it rose."""
         now = None if self.after is None else self.after.outcome
         if now is None:
             return "error"
@@ -141,8 +140,7 @@ class SuccessChange:
     def outcome(self, allowed: float) -> str:
         """``worse`` or ``incomplete``, which do not pass; else ``unchanged`` if the rates are the same, ``better``
         or ``within threshold`` if the interval leaves out zero, and ``not distinguishable`` if it does not, or if
-        too few drives give none.
-        """
+        too few drives give none."""
         if self.is_worse(allowed):
             return "worse"
         if self.found is None or self.is_incomplete:
@@ -434,8 +432,7 @@ def junit(found: Sequence[SuccessChange]) -> str:
     """JUnit XML, one suite per contestant, one case per instance.
 
     Lost ones fail. Errors are those not judged now, and those in which the agent failed or never gave an action,
-    before the change too. What else was not solved before passes: the change made nothing worse.
-    """
+    before the change too. What else was not solved before passes: the change made nothing worse."""
     root = ElementTree.Element("testsuites", name="automotive-cosim compare")
     for each in found:
         verdicts = [

@@ -196,8 +196,7 @@ def load_results(folder: Path | str) -> pd.DataFrame:
 
     Raises:
         UserError: it is not an evaluation's folder, or is damaged.
-        SetupError: pandas is not installed.
-    """
+        SetupError: pandas is not installed."""
     try:
         import pandas as pd
     except ImportError as error:
@@ -218,8 +217,7 @@ def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[Episode
 
     If one half has not been run, the pair has not been run: those whose first half failed would else be lost, and
     those whose first half succeeded not counted. If one ended in an error, the pair is an error, unless the other
-    half failed.
-    """
+    half failed."""
     found: dict[str, list[EpisodeRow]] = {}
     for row in rows:
         if row.pair:

@@ -130,16 +130,13 @@ def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE
 
 
 def rate(
-    outcomes: Iterable[tuple[Hashable, bool | None]],
-    not_run: int = 0,
-    confidence: float = CONFIDENCE,
+    outcomes: Iterable[tuple[Hashable, bool | None]], not_run: int = 0, confidence: float = CONFIDENCE
 ) -> Rate:
     """A rate with Wilson's interval at the effective sample size (Korn and Graubard 1998, Survey Methodology 24).
 
     Args:
         outcomes: (cluster, success) of each episode that has run; success None is an error.
-        not_run: number of further planned episodes.
-    """
+        not_run: number of further planned episodes."""
     clusters: dict[Hashable, list[bool]] = defaultdict(list)
     errors = 0
     for cluster, success in outcomes:
@@ -157,8 +154,7 @@ def effective_size(clusters: Sequence[Sequence[bool]]) -> float:
     """The effective number of independent episodes, between the number of clusters and that of the episodes.
 
     The design effect is the variance of the rate between clusters divided by that of a simple sample. If all
-    episodes agree, it cannot be estimated, and the clusters are counted.
-    """
+    episodes agree, it cannot be estimated, and the clusters are counted."""
     count, groups = sum(map(len, clusters)), len(clusters)
     share = sum(map(sum, clusters)) / count
     if share in (0.0, 1.0) or groups < 2:
@@ -175,8 +171,7 @@ def all_pass(trials: Sequence[bool], k: int) -> float | None:
 
     Args:
         trials: outcomes of the instance's repeats.
-        k: 1 or more; None is returned for more than there are.
-    """
+        k: 1 or more; None is returned for more than there are."""
     return comb(sum(trials), k) / comb(len(trials), k) if len(trials) >= k else None
 
 
@@ -197,8 +192,7 @@ def compare(
     Args:
         first: success by instance.
         second: success by instance of the other agent.
-        clusters: the cluster, e.g. the task, of each instance.
-    """
+        clusters: the cluster, e.g. the task, of each instance."""
     shared = [instance for instance in first if instance in second]
     if not shared:
         return None
@@ -234,8 +228,7 @@ def clustered_mean(values: Iterable[tuple[Hashable, float]], seed: int = 0) -> M
     """The mean with a percentile bootstrap interval over whole clusters; None without values.
 
     Args:
-        values: (cluster, value) of each episode.
-    """
+        values: (cluster, value) of each episode."""
     sums: dict[Hashable, list[float]] = defaultdict(lambda: [0.0, 0.0])
     for cluster, value in values:
         sums[cluster][0] += value
@@ -271,8 +264,7 @@ def bootstrap(sums: Sequence[Sequence[float]], seed: int) -> Interval:
 def _newcombe(cells: Sequence[tuple[bool, bool]], size: float) -> Interval:
     """Score interval of a paired difference (Newcombe 1998, Statistics in Medicine 17:2635, method 8).
 
-    The correlation is omitted if a margin is empty; the cells are scaled to ``size`` in total.
-    """
+    The correlation is omitted if a margin is empty; the cells are scaled to ``size`` in total."""
     count = len(cells)
     one, other = (sum(cell[which] for cell in cells) / count for which in (0, 1))
     both = sum(first and second for first, second in cells) / count

@@ -82,8 +82,7 @@ def tables(results: Results) -> list[Table]:
     """The tables of success, the most important first; see ``findings`` for the others.
 
     Args:
-        results: with the same instances for every contestant, ``Results.shared``.
-    """
+        results: with the same instances for every contestant, ``Results.shared``."""
     made = [
         main(results),
         subsets(results),
@@ -132,12 +131,7 @@ def progress(results: Results) -> Table:
         counts = (found.planned, found.judged, found.errors, found.not_run)
         joined = pairs(mine)
         rows.append(
-            (
-                each.label,
-                *map(str, counts),
-                Cell(rate_in_words(found), ids),
-                _pair_cell(joined) if joined else NONE,
-            )
+            (each.label, *map(str, counts), Cell(rate_in_words(found), ids), _pair_cell(joined) if joined else NONE)
         )
     columns = ("Contestant", "Planned", "Judged", "Errors", "Not run", "Success", "Pairs")
     note = " ".join(filter(None, ("All episodes of each contestant, both halves.", results.unspoken, HOW_RATES)))

@@ -53,6 +53,5 @@ def render(template: str, **values: object) -> str:
 
     Args:
         template: path inside the package, e.g. ``report/page.html``; it extends ``report/base.html``.
-        values: what it shows; a missing one is an error, not a gap.
-    """
+        values: what it shows; a missing one is an error, not a gap."""
     return plain(markup(_ENVIRONMENT.get_template(template).render(values)))

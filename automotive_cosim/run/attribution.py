@@ -47,11 +47,7 @@ TOGETHER_S, MOST_PAIRS = 60.0, 15
 
 
 def attribute(
-    folder: Path,
-    trial: str = "",
-    only: Collection[int] | None = None,
-    *,
-    simulations: Simulations | None = None,
+    folder: Path, trial: str = "", only: Collection[int] | None = None, *, simulations: Simulations | None = None
 ) -> list[ActEffect]:
     """Measures what each act of a stored trial changed, and keeps it (``path_of``) unless it was asked for some.
 
@@ -64,8 +60,7 @@ def attribute(
 
     Raises:
         UserError: no such trial or act, or its trace cannot be read.
-        InfrastructureError: the simulation failed, or does not repeat the trial.
-    """
+        InfrastructureError: the simulation failed, or does not repeat the trial."""
     stored = recorded(folder, trial)
     with ExitStack() as ends, forked(stored, simulations or ends.enter_context(closing(Simulations()))) as forks:
         if only is not None:
@@ -116,8 +111,7 @@ def culprit(effects: Sequence[ActEffect], kinds: Collection[str] = ()) -> str:
     """The act, or the missing act, that made a trial fail, in words; empty if none is known.
 
     Args:
-        kinds: of a drive, kinds of events; what became of others is told only if nothing of these is known.
-    """
+        kinds: of a drive, kinds of events; what became of others is told only if nothing of these is known."""
     found = [each for each in effects if each.verdict.startswith("no success") or (each.points or 0.0) < 0]
     lacking = [each for each in effects if each.act in (NO_ACT, LATE_ACT)]
     named = [

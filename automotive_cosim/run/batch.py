@@ -157,8 +157,7 @@ def run_plan(
     Raises:
         UserError: the plan names something that does not exist, or the folder cannot take its results.
         InfrastructureError: no worker becomes available.
-        KeyboardInterrupt: passed on; only the running trials are lost.
-    """
+        KeyboardInterrupt: passed on; only the running trials are lost."""
     kind: BatchKind[Plan, TrialSetup, TrialRow] = BatchKind(
         kind_of, partial(worker.trials, pictures), (TRACES, PICTURES), asks_models=True
     )
@@ -187,8 +186,7 @@ def run_jobs(
         tell: called at the start, after every job, and in between if that takes long.
 
     Raises:
-        as ``run_plan``.
-    """
+        as ``run_plan``."""
     batch = _Batch(store, jobs, opener, executor, retries, tell, limit, budget)
     try:
         batch.run()

@@ -80,8 +80,7 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
 
     Raises:
         UserError: the scenario is missing or invalid.
-        InfrastructureError: it does not run.
-    """
+        InfrastructureError: it does not run."""
     loaded = open_scenario(scenario)
     say("plain libsumo loop")
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as folder:

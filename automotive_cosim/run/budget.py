@@ -77,8 +77,7 @@ class Meter(LocalTurns):
 
         Args:
             budget: what may be spent in total.
-            before: by earlier starts of the same evaluation.
-        """
+            before: by earlier starts of the same evaluation."""
         super().__init__()
         self._budget = budget
         self._tokens, self._usd = before.tokens, before.usd
@@ -122,8 +121,7 @@ class Metered:
 
         Raises:
             BudgetSpentError: nothing is left; the episode is rerun with a larger budget.
-            ModelError: as the model.
-        """
+            ModelError: as the model."""
         if refusal := self._meter.refusal():
             raise BudgetSpentError(refusal)
         reply = self._model.chat(messages)

@@ -61,8 +61,7 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
     """Compares an evaluation's rows with its plan, expanded by the installed catalogue.
 
     Args:
-        rows: its rows by id.
-    """
+        rows: its rows by id."""
     judged = sum(row.outcome is not None for row in rows.values())
     errors, unit = len(rows) - judged, unit_of(manifest["plan"])
     idle = sum(isinstance(row, DriveTrialRow) and row.has_nothing_due for row in rows.values())

@@ -66,8 +66,7 @@ def estimates(steps: Sequence[Step], moments: Sequence[Moment]) -> tuple[Positio
     """The estimates of an episode, in order, except those made while there was a fix.
 
     Args:
-        moments: from departure to its end, in order.
-    """
+        moments: from departure to its end, in order."""
     found = []
     for before, step in pairwise(steps):
         action = step.action
@@ -80,10 +79,7 @@ def estimates(steps: Sequence[Step], moments: Sequence[Moment]) -> tuple[Positio
             continue
         found.append(
             PositionEstimate(
-                step.number,
-                now.gps.age_s,
-                _off_m(now, *said),
-                _off_m(now, reckoned.lon_deg, reckoned.lat_deg),
+                step.number, now.gps.age_s, _off_m(now, *said), _off_m(now, reckoned.lon_deg, reckoned.lat_deg)
             )
         )
     return tuple(found)

@@ -78,8 +78,7 @@ _R = TypeVar("_R")
 Runner = Callable[[_J, Path], _R]
 """Runs a job, writes the files to keep into the folder, and returns its row, even after an error.
 
-OSError if something cannot be written.
-"""
+OSError if something cannot be written."""
 
 Opener = Callable[[], AbstractContextManager[Runner[J, R]]]
 """Makes a worker's runner; it is sent to the worker, so it must be a module's function or a partial of one."""
@@ -164,8 +163,7 @@ class Worker(Protocol[J_contra, R_co]):
 
         Raises:
             LostError: it has died.
-            UserError: it cannot work, and neither can others like it.
-        """
+            UserError: it cannot work, and neither can others like it."""
         ...
 
     def end(self, *, at_once: bool) -> None:
@@ -194,8 +192,7 @@ class Executor(Protocol):
 
         Args:
             opener: makes the worker's runner.
-            folder: where to put the files of its jobs.
-        """
+            folder: where to put the files of its jobs."""
         ...
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
@@ -229,8 +226,7 @@ def doing(what: str, amount: str = "", *, is_warm_up: bool = False, share: float
 
     Args:
         what: the phase, such as ``warming up traffic``.
-        amount: how far it is, such as ``120 of 600 s``.
-    """
+        amount: how far it is, such as ``120 of 600 s``."""
     _TELL.get()(what, amount, is_warm_up, share)
 
 

@@ -41,8 +41,7 @@ class ResultsKind:
 
         Raises:
             UserError: the folder has no results, is damaged, or cannot be written.
-            SetupError: the extra ``reports`` is not installed.
-        """
+            SetupError: the extra ``reports`` is not installed."""
         page: Path = resolve_name(self.page)(folder)
         return page
 

@@ -59,8 +59,7 @@ def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
 
     Args:
         moments: since the hand-over, in order, at least one.
-        until_s: simulation time up to which it is measured; the last tick of a baseline run may lie beyond it.
-    """
+        until_s: simulation time up to which it is measured; the last tick of a baseline run may lie beyond it."""
     hand_over, end = moments[0], moments[-1]
     states = [state for state in states_of(moments) if state.time_s <= until_s + TOLERANCE_S]
     levels_pct = [moment.signals[ENERGY.LEVEL.path] for moment in moments]
@@ -69,10 +68,9 @@ def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
     return DriveFigures(
         overspeed_m=round(overspeed(moments, until_s)[0], 3),
         min_time_to_collision_s=nearest_s(states),
-        arrival_s={
-            None: round(passed_s + end.driving.ahead.eta_s, 3),
-            EgoEnd.ARRIVED: round(passed_s, 3),
-        }.get(end.driving.end),
+        arrival_s={None: round(passed_s + end.driving.ahead.eta_s, 3), EgoEnd.ARRIVED: round(passed_s, 3)}.get(
+            end.driving.end
+        ),
         energy_wh=round((levels_pct[0] - level_pct) / 100 * BATTERY_KWH * 1000, 3),
     )
 
@@ -82,8 +80,7 @@ def overspeed(moments: Sequence[Moment], until_s: float = inf) -> tuple[float, f
 
     Args:
         moments: in order; what passed before the first does not count.
-        until_s: simulation time up to which it is measured.
-    """
+        until_s: simulation time up to which it is measured."""
     over_m = whole_s = 0.0
     for earlier, moment in pairwise(moments):
         limit_of: dict[object, float | None] = {}
@@ -193,8 +190,7 @@ def compliance(moments: Sequence[Moment]) -> float | None:
     """Speed-limit compliance: 1 without overspeed, 0 from a mean overspeed of 2.23 m/s.
 
     Args:
-        moments: in order; the result is None if no limit binds in any of them, or no time passes.
-    """
+        moments: in order; the result is None if no limit binds in any of them, or no time passes."""
     over_m, whole_s = overspeed(moments)
     return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
 

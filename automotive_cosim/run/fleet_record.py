@@ -46,8 +46,7 @@ class FleetRecord:
             name: of the fleet, for its folder below ``live``.
             shapes: the whole network.
             look: gives where the cars are.
-            about: what is run, and by SUMO's ids under ``cars`` the trials of cars that have one.
-        """
+            about: what is run, and by SUMO's ids under ``cars`` the trials of cars that have one."""
         self._road, self._look = road, look
         self._next_s = road.time_s
         self._notes: list[str] = []

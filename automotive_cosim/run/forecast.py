@@ -44,10 +44,7 @@ class Tokens:
 A_STEP: Mapping[str, Tokens] = {"t3a": Tokens(1450, 100), "m3a": Tokens(1450, 100), "asurada": Tokens(1950, 100)}
 """Text of one step with its reflection, as the built-in agents send it to the stand-in (40 tasks, grid, November
 2026). Its answers are shorter than a model's, which gives reasons; 100 tokens are our estimate."""
-BY_PROMPT: Mapping[PromptLength, float] = {
-    PromptLength.STANDARD: 1.0,
-    PromptLength.SHORT: 0.75,
-}
+BY_PROMPT: Mapping[PromptLength, float] = {PromptLength.STANDARD: 1.0, PromptLength.SHORT: 0.75}
 """What another prompt makes of that (nine tasks on grid: T3A's turns have 910 and 1,250 tokens)."""
 LONGEST = 1.5
 """The longest question of a trial, of that."""
@@ -107,8 +104,7 @@ def forecast(jobs: Sequence[TrialSetup], workers: int, rows: Iterable[TrialRow] 
     """What the jobs that have not run yet will take.
 
     Args:
-        rows: the trials in the plan's folder so far.
-    """
+        rows: the trials in the plan's folder so far."""
     judged = [row for row in rows if row.error is None]
     done = {row.id for row in judged}
     left = [job for job in jobs if job.id not in done]

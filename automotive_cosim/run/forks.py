@@ -90,8 +90,7 @@ def forked(trial: Recorded, simulations: Simulations) -> Iterator[Forks]:
 
     Raises:
         UserError: something in it does not exist.
-        InfrastructureError: the simulation failed, or does not repeat the trial.
-    """
+        InfrastructureError: the simulation failed, or does not repeat the trial."""
     with closing(Forks(trial.job.seed)) as forks:
 
         class Forking(Player):

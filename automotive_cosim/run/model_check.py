@@ -29,8 +29,7 @@ def misfits(jobs: Iterable[TrialSetup]) -> Iterator[str]:
 
     Raises:
         ModelError: a model does not answer at all.
-        UserError: the file of one in this process is none, or not whole.
-    """
+        UserError: the file of one in this process is none, or not whole."""
     tried = set()
     for job in jobs:
         if not asks(job.asked_model):
@@ -63,8 +62,7 @@ def misfit(model: ChatModel, tokens: int, picture: bytes | None, *, calls: bool 
 
     Raises:
         ModelError: it does not answer at all.
-        UserError: its file is none, or not whole.
-    """
+        UserError: its file is none, or not whole."""
     if isinstance(model, Local):
         read_model_file(model.file)
         has_room = tokens <= model.context_tokens

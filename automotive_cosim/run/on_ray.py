@@ -50,8 +50,7 @@ class OnRay:
         Args:
             address: of a running cluster, e.g. ``10.0.0.4:6379``; by default, a new one on this machine.
             workers: number of actors; None uses all the CPUs that the cluster has at the moment.
-            sent: a folder of which every worker gets a copy to run in.
-        """
+            sent: a folder of which every worker gets a copy to run in."""
         self._address = address or "local"
         self._workers = workers
         self._sent = sent
@@ -61,8 +60,7 @@ class OnRay:
 
         Raises:
             SetupError: there is no such cluster, or it runs another version of Python or Ray.
-            UserError: the folder to send does not exist.
-        """
+            UserError: the folder to send does not exist."""
         if self._sent is not None and not self._sent.is_dir():
             raise UserError(f"{self._sent} is not a folder; give one to copy to the workers")
         _probe(self._address)

@@ -53,8 +53,7 @@ def check_agent(name: str) -> None:
 
     Raises:
         UserError: it cannot.
-        InfrastructureError: no process can be started.
-    """
+        InfrastructureError: no process can be started."""
     with closing(ForkServer()) as fork_server, closing(OutsideAgent(fork_server, name)) as agent:
         _ = agent.channels
         if agent.failure is not None:
@@ -81,8 +80,7 @@ class OutsideAgent:
             name: for ``agents.make_agent``.
             settings: for an agent with a model or behind an address; others get none.
             chat_model: answers instead of that model.
-            step_s: limit of the wall time that its process may take for one step.
-        """
+            step_s: limit of the wall time that its process may take for one step."""
         self.name = name
         self.answer_s = 0.0
         """Wall seconds that its last answer took: its model's, or, without one, its own."""
@@ -129,8 +127,7 @@ class OutsideAgent:
             ActionError: it raised, or its answer could not be read; the step still counts.
             OutOfBudgetError: it gives up, or its budget is spent.
             ModelError: this program's client could not reach the model.
-            AgentError: its process has failed, ended or hung.
-        """
+            AgentError: its process has failed, ended or hung."""
         self.stages, self.answer_s, self._step_left_s = (), 0.0, self._step_s
         self._replies.clear()
         self._send("seen", observation)

@@ -153,8 +153,7 @@ def _work(jobs: Connection, opener: Opener[J, R], folder: Path, environment: Map
     """Says that it is ready, then answers each job with its row, until it receives None.
 
     The parent handles Ctrl-C; when the parent is gone, this process ends at once. The environment is the parent's
-    now, not that of when the first worker was started.
-    """
+    now, not that of when the first worker was started."""
     os.environ.clear()
     os.environ.update(environment)
     signal.signal(signal.SIGINT, signal.SIG_IGN)

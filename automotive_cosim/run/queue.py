@@ -22,8 +22,7 @@ def next_simulation(
     Args:
         left: number of waiting jobs by simulation, at least one each.
         warm: the simulation that the worker ran last.
-        busy: number of workers that run each.
-    """
+        busy: number of workers that run each."""
     if warm in left:
         return warm
     free = [each for each in left if not busy.get(each)] or [each for each in left if left[each] >= SHARED_FROM]
@@ -53,8 +52,7 @@ class JobQueue(Generic[J]):
             warm: the simulation that the worker ran last.
             busy: number of workers that run each.
             timed: kinds whose duration is known. The others go first in a warm simulation, where it can be
-                measured, and last in a cold one.
-        """
+                measured, and last in a cold one."""
         simulation = next_simulation(self._left, warm, busy)
         if simulation is None:
             return None

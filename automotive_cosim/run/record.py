@@ -101,8 +101,7 @@ class Recorder(TrialObserver):
             folder: the trial's, which may not exist yet; None keeps no folder.
             arguments: the command's, of a trial that it runs alone; None in an evaluation, whose manifest has what
                 is the same for all its trials.
-            whole: write the whole state after each step.
-        """
+            whole: write the whole state after each step."""
         self.folder = folder
         self.lines: list[Json] = []
         """The trace, once the trial is over: the steps, then the result; nothing if there is nothing to judge."""

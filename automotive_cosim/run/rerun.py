@@ -222,8 +222,7 @@ def played(
 
     Raises:
         UserError: something in the setup does not exist.
-        InfrastructureError: the simulation failed.
-    """
+        InfrastructureError: the simulation failed."""
     recorder = Recorder(stored.job, None)
     run = TrialRun(stored.job, player or stored.player, (recorder, *observers))
     if isinstance(stored.job, DriveSetup) and stored.job.settings.cars:
@@ -289,8 +288,7 @@ class Player:
 
         Raises:
             AgentError: the agent failed here.
-            OutOfBudgetError: the recording ends here.
-        """
+            OutOfBudgetError: the recording ends here."""
         step = next(self._steps, None)
         if step is None and self._failure is not None:
             raise AgentError(self._failure)

@@ -90,8 +90,7 @@ class SeenColumns:
         """The rows of the next second.
 
         Raises:
-            ValueError, TypeError, LookupError: they are not columns of such numbers.
-        """
+            ValueError, TypeError, LookupError: they are not columns of such numbers."""
         rows: list[SeenRow] = []
         number, now, before = 0, {}, self._before
         for step, x, y, heading, speed, signals in zip(*columns, strict=True):

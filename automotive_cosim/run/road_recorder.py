@@ -52,8 +52,7 @@ class RoadRecorder(TrialObserver):
 
         Args:
             folder: where the file goes; an observer that empties it comes first.
-            about: what is run, by name, as the file tells it.
-        """
+            about: what is run, by name, as the file tells it."""
         self._path = folder / ROAD
         self._about = about
         self._looked: dict[float, RoadSnapshot] = {}
@@ -132,8 +131,7 @@ class RoadWriter:
 
         Args:
             shapes: lanes, junctions and ground of the whole network.
-            begin_s: simulation time from which the file counts.
-        """
+            begin_s: simulation time from which the file counts."""
         self._raw = BufferedWriter(growing(path, anew=True))
         self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
         self._is_whole = True

@@ -115,8 +115,7 @@ def steady(row: JobRow) -> Json:
 def columns(record: object) -> Json:
     """A row, or another dataclass, as the columns of a data frame, all plain values.
 
-    A field marked ``InColumns`` that is None makes no columns.
-    """
+    A field marked ``InColumns`` that is None makes no columns."""
     made: Json = {}
     marks = _form(type(record)).marks
     for name, value in as_json(record).items():

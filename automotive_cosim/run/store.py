@@ -38,8 +38,7 @@ def own_code(agents: Iterable[str]) -> dict[str, str]:
     """The hash of the code of each ``package.module:Class`` among the names of agents.
 
     It covers the module's file, or all modules of its top-level package, and not what these import from elsewhere.
-    Agents behind an address and those that are not found have none.
-    """
+    Agents behind an address and those that are not found have none."""
     found: dict[str, str] = {}
     for name in agents:
         module, colon, made = name.partition(":")
@@ -53,8 +52,7 @@ def own_scenarios(plan: Json) -> dict[str, dict[str, str]]:
     """The hashes of the files of each scenario of one's own that a plan names, by name of the file.
 
     Args:
-        plan: with one ``scenario`` or several ``scenarios``. Those that cannot be read have none.
-    """
+        plan: with one ``scenario`` or several ``scenarios``. Those that cannot be read have none."""
     found: dict[str, dict[str, str]] = {}
     for name in (plan.get("scenario"), *(plan.get("scenarios") or ())):
         with suppress(UserError, OSError):

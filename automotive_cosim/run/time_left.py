@@ -87,8 +87,7 @@ class Pace:
         Args:
             untried: for each situation of which it is not known whether it arises, its simulation.
             earlier: jobs of earlier starts. The longest of each simulation is taken for a cold one.
-            weights: of the warm-up in each scenario, see ``Job``.
-        """
+            weights: of the warm-up in each scenario, see ``Job``."""
         self._weights = weights
         self._untried = dict(untried)
         self._own: dict[Hashable, _Means] = defaultdict(_Means)
@@ -125,8 +124,7 @@ class Pace:
 
         Args:
             waiting: how many jobs wait, by simulation and kind.
-            idle: the warm simulation of each other worker, including those yet to be started.
-        """
+            idle: the warm simulation of each other worker, including those yet to be started."""
         if not self._knows(waiting, running, {*idle, *(turn.job.simulation for turn in running)}):
             return None
         expected = _Expected(self._own, self._cold, running, self._weights)

@@ -112,8 +112,7 @@ def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | N
     Args:
         moments: from departure to the end of the aftermath.
         steps: from the hand-over to the end.
-        goal_s: seconds from the hand-over until the goal held for the rest of the episode.
-    """
+        goal_s: seconds from the hand-over until the goal held for the rest of the episode."""
     zero_s = steps[0].moment.time_s
     entries = [
         _entry(moments[0], zero_s, "departure", "departs on"),

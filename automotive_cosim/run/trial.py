@@ -156,8 +156,7 @@ class Answers:
         """The stages of the last turn, whose replies are counted; asked once for each.
 
         Args:
-            finished: whether the turn came to an answer.
-        """
+            finished: whether the turn came to an answer."""
         stages = tuple(self._agent.stages) if isinstance(self._agent, Thinker) else ()
         replies = [stage.reply for stage in stages if stage.reply is not None]
         self._replies += replies
@@ -195,8 +194,7 @@ class Answers:
 class TrialSetup(Job):
     """What one agent does once, by name: on a task's half (``EpisodeSetup``) or on a drive (``DriveSetup``).
 
-    The same trial gives the same trace.
-    """
+    The same trial gives the same trace."""
 
     agent: str = ""
     model: str = NO_MODEL
@@ -258,8 +256,7 @@ class TrialSetup(Job):
 
         Raises:
             UserError: something in it does not exist.
-            InfrastructureError: the situation did not arise, or the road failed.
-        """
+            InfrastructureError: the situation did not arise, or the road failed."""
 
     @abstractmethod
     def row(self, session: Any, end: End, answers: Answers) -> TrialRow:
@@ -303,8 +300,7 @@ class TrialSetup(Job):
 
         Args:
             what: what is run, which comes first.
-            rest: what distinguishes it besides agent, model, seed, repeat and conditions.
-        """
+            rest: what distinguishes it besides agent, model, seed, repeat and conditions."""
         conditions = self.conditions
         others = replace(conditions, geo=GeoInput.FULL).tags
         return file_name(
@@ -386,8 +382,7 @@ def run_trial(
 
     Raises:
         UserError: something in the trial does not exist or is invalid; no observer has seen the agent take over.
-        KeyboardInterrupt: passed on after the observers have received the row so far.
-    """
+        KeyboardInterrupt: passed on after the observers have received the row so far."""
     run = TrialRun(trial, agent, observers)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))

@@ -97,7 +97,7 @@ def run_with(
     return row
 
 
-class PhaseObserver(TrialObserver):
+class _PhaseObserver(TrialObserver):
     """Tells the phases of a trial, the agent's by its steps or, on a drive, by the time."""
 
     _session: Session | None = None
@@ -140,7 +140,7 @@ def _recorded(
     kept = None if pictures is Pictures.NONE else beneath(folder, f"{PICTURES}/{job.id}")
     with ExitStack() as ends:
         recorder = ends.enter_context(closing(Recorder(job, kept)))
-        everyone = [*observers, recorder, PhaseObserver()]
+        everyone = [*observers, recorder, _PhaseObserver()]
         if kept is not None:
             everyone.append(ends.enter_context(closing(RoadRecorder(kept, job.about))))
         yield recorder, everyone

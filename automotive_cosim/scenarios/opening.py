@@ -41,8 +41,7 @@ def open_scenario(
     Raises:
         UnknownNameError: no such scenario.
         ScenarioError: its files are invalid, or no route leads from the one place to the other.
-        UserError: ``origin`` is not a position on earth.
-    """
+        UserError: ``origin`` is not a position on earth."""
     scenario = _opened(name, to_be_moved=origin is not None)
     if origin is not None:
         scenario = relocated(scenario, origin)

@@ -120,8 +120,7 @@ def save_picture(scenario: Scenario, path: Path) -> tuple[str, ...]:
 
     Raises:
         ScenarioError: see ``draw_scenario``.
-        UserError: the file cannot be written.
-    """
+        UserError: the file cannot be written."""
     picture, unwritten = draw_scenario(scenario)
     try:
         make_folder(path.parent)

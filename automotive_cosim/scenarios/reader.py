@@ -29,8 +29,7 @@ def load(name_or_folder: str | Path) -> Scenario:
 
     Raises:
         UnknownNameError: neither a shipped name nor a folder.
-        ScenarioError: the file is missing, is not TOML, or has a wrong, extra or missing field.
-    """
+        ScenarioError: the file is missing, is not TOML, or has a wrong, extra or missing field."""
     folder = Path(name_or_folder)
     if not (folder / "scenario.toml").is_file():
         names = shipped()
@@ -86,12 +85,7 @@ class ScenarioFile(Described):
     """``scenario.toml``: what SUMO's own files have no word for."""
 
     start: Annotated[
-        datetime,
-        Form(
-            r"^\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d(\.\d+)?)?)?$",
-            "2026-03-10T08:30:00",
-            _local,
-        ),
+        datetime, Form(r"^\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d(\.\d+)?)?)?$", "2026-03-10T08:30:00", _local)
     ]
     """Local date and time at which the ego departs, after the warm-up."""
     time_zone: Annotated[ZoneInfo, Form(r"^[A-Za-z][A-Za-z0-9_+/-]*$", "Europe/Paris", _zone)]

@@ -36,8 +36,7 @@ def relocated(scenario: Scenario, origin: tuple[float, float]) -> Scenario:
 
     Raises:
         UserError: ``origin`` is not a position on earth.
-        ScenarioError: the network cannot be read.
-    """
+        ScenarioError: the network cannot be read."""
     place = shipped().place(*origin)
     notes = [*scenario.notes]
     if place.law is None:
@@ -60,8 +59,7 @@ def at_home(scenario: Scenario) -> Scenario:
 
     Raises:
         UserError: its origin is not a position on earth.
-        ScenarioError: the network cannot be read.
-    """
+        ScenarioError: the network cannot be read."""
     assert scenario.origin is not None
     place = shipped().place(*scenario.origin)
     law = place.law

@@ -45,8 +45,7 @@ def new_folder(target: Path) -> Iterator[Path]:
 
     Raises:
         UserError: the target is not empty, or another program is making it.
-        OSError: it cannot be written.
-    """
+        OSError: it cannot be written."""
     check_target(target)
     with appearing(make_folder(target.parent) / target.name) as draft:
         yield draft
@@ -125,8 +124,7 @@ def write_variant(
 
     Raises:
         UserError: a file leads out of the folder or is too large.
-        OSError: a file cannot be read or written.
-    """
+        OSError: a file cannot be read or written."""
     toml = scenario.folder / "scenario.toml"
     described = toml.is_file()
     home = scenario.folder if described else configuration.path.absolute().parent
@@ -158,8 +156,7 @@ def _copied(configuration: Configuration, home: Path, draft: Path, folder: Path)
         home: the scenario's folder; a file in it has the same place in the copy.
 
     Returns:
-        Option -> names as the copy's configuration has them, separated by commas.
-    """
+        Option -> names as the copy's configuration has them, separated by commas."""
     places: dict[Path, Path] = {}
     left = MOST_COPIED_BYTES
     inputs: dict[str, str] = {}

@@ -93,8 +93,7 @@ def deal(
 
     Args:
         jobs: of a plan for these people.
-        order_seed: the same seed deals the same.
-    """
+        order_seed: the same seed deals the same."""
     halves: dict[tuple[str, str, int], list[str]] = {}
     found = {}
     for job in jobs:

@@ -35,8 +35,7 @@ def cars(folder: Path, name: str) -> Json:
 
     Raises:
         NotHereError: there is no such fleet.
-        UserError: the folder is damaged.
-    """
+        UserError: the folder is damaged."""
     if name not in dict(fleets_in(folder)):
         raise NotHereError(f"there are no cars of {name!r}")
     fleet, rows = read_fleet(folder, name), read_trials(folder)

@@ -43,8 +43,7 @@ class Person:
         Args:
             model: the code name, which replaces the model.
             counts: whether leaving counts as a failure of the agent.
-            clock: wall seconds.
-        """
+            clock: wall seconds."""
         self.model = model
         self.counts = counts
         self.has_left = False
@@ -95,8 +94,7 @@ class Person:
 
         Raises:
             AgentError: the person has left an episode that counts.
-            PersonLeftError: the person has left another one.
-        """
+            PersonLeftError: the person has left another one."""
         if self._told is not None:
             self._told(observation)
         tick_s = self._tick_s
@@ -119,8 +117,7 @@ class Person:
 class Preview:
     """The screen as the waiting acts will leave it, drawn before their seconds have passed on the road.
 
-    Acts are performed on a copy of the cockpit that nothing else uses.
-    """
+    Acts are performed on a copy of the cockpit that nothing else uses."""
 
     def __init__(self) -> None:
         self._cockpit: Cockpit | None = None

@@ -107,8 +107,7 @@ class Game(TrialObserver):
             folder: where practice is recorded, each episode in a folder of its own, and the rest as an evaluation
                 in ``people``.
             scenario: instead of the tasks' own.
-            simulations: warm simulations to use, which the caller closes; by default its own.
-        """
+            simulations: warm simulations to use, which the caller closes; by default its own."""
         self._scenario = scenario
         self._folder = folder
         self._rows = PlayedEpisodes(folder / FOLDER, scenario)
@@ -231,8 +230,7 @@ class Game(TrialObserver):
 
         Args:
             seen: version that is known already.
-            wait_s: how long to wait for a newer one.
-        """
+            wait_s: how long to wait for a newer one."""
         with self._news:
             self._news.wait_for(lambda: self._scene.version != seen, wait_s)
             return self._scene

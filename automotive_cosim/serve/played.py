@@ -39,11 +39,7 @@ CONDITIONS = Conditions(clock=Clock.MODEL)
 
 
 def people_plan(
-    tasks: Sequence[str],
-    people: Sequence[str],
-    seeds: Sequence[int],
-    repeats: int = 1,
-    scenario: str | None = None,
+    tasks: Sequence[str], people: Sequence[str], seeds: Sequence[int], repeats: int = 1, scenario: str | None = None
 ) -> Plan:
     """The plan in which everyone plays every task with every seed. A person's seconds pass on the road."""
     limits = Limits(steps=MOST_STEPS, hard_steps=MOST_STEPS, sim_s=MOST_S)
@@ -73,7 +69,7 @@ def check_code_name(name: str) -> None:
         )
 
 
-class PlayedRows(ABC, Generic[R]):
+class _PlayedRows(ABC, Generic[R]):
     """An evaluation that grows with whatever is played. Any method may be called from any thread."""
 
     kind: type[R]
@@ -83,8 +79,7 @@ class PlayedRows(ABC, Generic[R]):
         """Nothing is written before the first job.
 
         Args:
-            folder: the evaluation's.
-        """
+            folder: the evaluation's."""
         self.folder = folder
         self._lock = threading.Lock()
         self._ends = ExitStack()
@@ -120,7 +115,7 @@ class PlayedRows(ABC, Generic[R]):
         return self._store
 
 
-class PlayedEpisodes(PlayedRows[EpisodeRow]):
+class PlayedEpisodes(_PlayedRows[EpisodeRow]):
     """Episodes of tasks that a person played."""
 
     kind = EpisodeRow
@@ -130,8 +125,7 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
 
         Args:
             folder: the evaluation's.
-            scenario: instead of the tasks' own.
-        """
+            scenario: instead of the tasks' own."""
         super().__init__(folder)
         self._scenario = scenario
 
@@ -155,7 +149,7 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
         ).as_json()
 
 
-class PlayedDrives(PlayedRows[DriveTrialRow]):
+class PlayedDrives(_PlayedRows[DriveTrialRow]):
     """Drives that a person played."""
 
     kind = DriveTrialRow

@@ -90,8 +90,7 @@ class _Running:
 class EpisodeService:
     """Runs many episodes side by side; any method may be called from any thread.
 
-    Calls for one episode wait for each other; those for different episodes do not. Warm traffic is shared.
-    """
+    Calls for one episode wait for each other; those for different episodes do not. Warm traffic is shared."""
 
     def __init__(
         self,
@@ -103,8 +102,7 @@ class EpisodeService:
 
         Args:
             simulations: warm traffic, which the caller closes; by default its own.
-            clock: wall seconds, for the expiry.
-        """
+            clock: wall seconds, for the expiry."""
         self._own = Simulations(limits.episodes) if simulations is None else None
         self._simulations = simulations or self._own or Simulations()
         self._limits = limits
@@ -128,8 +126,7 @@ class EpisodeService:
         Raises:
             UserError: something in the specification does not exist, or there are too many episodes.
             TriggerNotReachedError: the situation did not arise within its time limit.
-            TrafficError: the traffic simulation failed.
-        """
+            TrafficError: the traffic simulation failed."""
         with self._room() as episode_id:
             startable = _OnTask(spec) if isinstance(spec, EpisodeSpec) else spec
             episode = startable.begin(self._simulations, channels, observer)
@@ -150,8 +147,7 @@ class EpisodeService:
 
         Raises:
             UserError: there is no such episode, or it is over.
-            TrafficError: the traffic simulation failed; the episode is gone.
-        """
+            TrafficError: the traffic simulation failed; the episode is gone."""
         with self._held(episode_id) as running:
             episode = running.episode
             if episode.end is not None:
@@ -176,8 +172,7 @@ class EpisodeService:
 
         Raises:
             UserError: there is no such episode.
-            TrafficError: the traffic simulation failed; the episode is gone.
-        """
+            TrafficError: the traffic simulation failed; the episode is gone."""
         with self._held(episode_id) as running:
             episode = running.episode
             if episode.end is None:

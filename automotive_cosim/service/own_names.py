@@ -23,8 +23,7 @@ def is_own(asked: str, names: frozenset[str], port: int) -> bool:
 
     Args:
         asked: the request's ``Host``.
-        names: the server's ``own_names``; one that listens everywhere may be asked by any address.
-    """
+        names: the server's ``own_names``; one that listens everywhere may be asked by any address."""
     name, _, told_port = asked.rpartition(":")
     if not told_port.isdigit() or int(told_port) != port:
         return False

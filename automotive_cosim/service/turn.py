@@ -40,8 +40,7 @@ class EpisodeTurn:
 
         A channel that the agent is not given has no key, nor has a reading that the car does not give. ``elements``
         are those that are visible, each with its index. ``on_watch`` is there on drives alone, and the house rules
-        come with the first turn.
-        """
+        come with the first turn."""
         seen = self.observation
         told: Json = {
             "episode_id": self.episode_id,

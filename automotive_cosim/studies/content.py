@@ -95,8 +95,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
 
     Raises:
         UserError: it is not a study's folder, or is damaged.
-        SetupError: pandas is not installed.
-    """
+        SetupError: pandas is not installed."""
     try:
         import pandas as pd
     except ImportError as error:
@@ -135,8 +134,7 @@ def write_report(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is damaged, or cannot be written.
-        SetupError: the extra ``reports`` is not installed.
-    """
+        SetupError: the extra ``reports`` is not installed."""
     study = read_study(folder, read_manifest(folder)["plan"]["study"])
     return write_shown(study, shown_of(study))
 

@@ -40,8 +40,7 @@ def gridlock(summaries: Sequence[TrafficSummary]) -> Gridlock | None:
     """Why the traffic counts as gridlocked; None while it flows.
 
     Args:
-        summaries: measurements of one simulation, in order, about ``MEASURED_EVERY_S`` apart.
-    """
+        summaries: measurements of one simulation, in order, about ``MEASURED_EVERY_S`` apart."""
     if not summaries:
         return None
     last = summaries[-1]

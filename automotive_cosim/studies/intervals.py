@@ -36,8 +36,7 @@ def seed_mean(values: Iterable[tuple[int, float]], seed: int = 0) -> SeedMean | 
     """The mean over all decisions; None if there are none.
 
     Args:
-        values: (seed of the traffic, value) of each decision.
-    """
+        values: (seed of the traffic, value) of each decision."""
     by_seed: dict[int, list[float]] = defaultdict(list)
     for cluster, value in values:
         by_seed[cluster].append(value)

@@ -44,7 +44,7 @@ class TrafficSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DrivenSettings(TrafficSettings):
+class _DrivenSettings(TrafficSettings):
     """What studies set that fork the traffic."""
 
     incidents: Annotated[tuple[str, ...], Option("incident", repeats=True)] = ()
@@ -64,7 +64,7 @@ class DrivenSettings(TrafficSettings):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RerouteSettings(DrivenSettings):
+class RerouteSettings(_DrivenSettings):
     """What a rerouting study sets."""
 
     kind: ClassVar[str] = "reroute"
@@ -131,7 +131,7 @@ class RerouteSettings(DrivenSettings):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CongestionSettings(DrivenSettings):
+class CongestionSettings(_DrivenSettings):
     """What a congestion study sets."""
 
     kind: ClassVar[str] = "congestion"
@@ -150,7 +150,7 @@ class CongestionSettings(DrivenSettings):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AdoptionSettings(DrivenSettings):
+class AdoptionSettings(_DrivenSettings):
     """What a study of an assistant's adoption sets."""
 
     kind: ClassVar[str] = "adoption"

@@ -66,11 +66,9 @@ class Catalogue(Mapping[str, Task]):
     def add(self, *tasks: Task) -> None:
         """Adds tasks.
 
-        Raises:
-            ValueError: an id occurs twice, a safety task is not a pair, a pair states no difference or one of no
-                known kind, a task has fewer than four phrasings, or uses a parameter that it does not declare; or
-                one of the hard suite does not say what it is hard by.
-        """
+        Raises ValueError: an id occurs twice, a safety task is not a pair, a pair states no difference or one of
+        no known kind, a task has fewer than four phrasings, or uses a parameter that it does not declare; or one
+        of the hard suite does not say what it is hard by."""
         _enter(self._tasks, tasks)
 
     def add_folder(self, folder: Path) -> None:

@@ -76,8 +76,7 @@ def goal(
     """Makes a check of a predicate, which then takes its values and gives the ``NamedCheck`` with them.
 
     Args:
-        writes: of the values; without it, the first of them.
-    """
+        writes: of the values; without it, the first of them."""
     return lambda holds: keep(NamedCheck, holds, 3, words, writes)
 
 
@@ -209,8 +208,7 @@ def seat_recalled(hand_over: Moment, now: Moment, trace: Sequence[Moment], slot:
     """Seat and mirrors stand as one of the driver's memories has them.
 
     Args:
-        slot: number of the memory, from 1.
-    """
+        slot: number of the memory, from 1."""
     return _as_in_memory(now, now, slot)
 
 
@@ -249,8 +247,7 @@ def says_figure(
 
     Args:
         words: what the message has to contain besides, such as a unit.
-        figure: a number; for a time of day the minutes since midnight.
-    """
+        figure: a number; for a time of day the minutes since midnight."""
     key = "messages.sent"
     added = now.commands[key][len(hand_over.commands[key]) :]
     if len(added) != 1 or added[0]["to"] != to or words not in added[0]["text"]:
@@ -275,8 +272,7 @@ def wrote(
 
     Args:
         tells: what it has to say, each by any of its words or phrases.
-        without: what it must not mention.
-    """
+        without: what it must not mention."""
     key = "messages.sent"
     added = now.commands[key][len(hand_over.commands[key]) :]
     if len(added) != 1 or added[0]["to"] != to:
@@ -331,8 +327,7 @@ def road_asked(
 
     Args:
         request: a class or an exact request: ``road_asked(Reroute)`` accepts any, ``road_asked(Reroute("A 4"))``
-            that one.
-    """
+            that one."""
     asked = now.commands["requests"][len(hand_over.commands["requests"]) :]
     if len(asked) != 1:
         return False
@@ -432,8 +427,7 @@ class AllOf:
 class AlertGiven:
     """The driver was alerted of ``kind`` once; an advised speed, if any, is the given one, to 1 km/h.
 
-    Without a given one, any speed up to a posted limit may be advised: a warning of something else may name it.
-    """
+    Without a given one, any speed up to a posted limit may be advised: a warning of something else may name it."""
 
     kind: AlertKind
     speed_kmh: float | None = None

@@ -108,8 +108,7 @@ class Says:
 
         Args:
             hand_over: the moment of it.
-            steps: actions so far.
-        """
+            steps: actions so far."""
         return (
             steps >= self.step
             and now.time_s - hand_over.time_s >= self.time_s - ROUNDING_S
@@ -148,8 +147,7 @@ def untold(said: Iterable[str], tells: Iterable[tuple[str, ...]]) -> tuple[tuple
 
     Args:
         said: every answer of the agent.
-        tells: what he has to be told, each by any of its words or phrases.
-    """
+        tells: what he has to be told, each by any of its words or phrases."""
     heard = "".join(map(_said, said))
     return tuple(words for words in tells if not any(_has(heard, word) for word in words))
 
@@ -180,8 +178,7 @@ def is_lost(said: Collection[str], feedback: str | None) -> bool:
     """Whether the driver did not understand what the agent said to him in a step, or talked over it.
 
     Args:
-        said: what he said in it.
-    """
+        said: what he said in it."""
     return PARDON in said or feedback == TALKED_OVER
 
 
@@ -208,8 +205,7 @@ def dialogue(
     Args:
         topics: what the driver can be asked about.
         needed: the topics that have to be asked about, once each.
-        neutral: the answer to a question about none of them.
-    """
+        neutral: the answer to a question about none of them."""
     left, found = list(needed), []
     for text in texts:
         topic = topic_of(text, topics)

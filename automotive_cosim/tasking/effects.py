@@ -48,8 +48,7 @@ def glass_clears(hand_over: Moment, now: Moment, trace: Sequence[Moment], rear: 
 
     Args:
         rear: the rear window, not the windshield.
-        by: share of the road that the fog hides no longer, 0 to 1.
-    """
+        by: share of the road that the fog hides no longer, 0 to 1."""
     acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, hand_over))
     if rear:
         return idle.rear_window.fog_inside - acted.rear_window.fog_inside >= by

@@ -42,8 +42,7 @@ def not_before(hand_over: Moment, now: Moment, trace: Sequence[Moment], check: C
     """Something holds, and did at no moment before a time of day.
 
     Args:
-        clock: local hours and minutes, as ``22:00``, of the same day.
-    """
+        clock: local hours and minutes, as ``22:00``, of the same day."""
     return check.holds(hand_over, now, trace) and not any(
         check.holds(hand_over, moment, trace[: at + 1])
         for at, moment in enumerate(trace)
@@ -67,8 +66,7 @@ def while_(
     """As long as one thing held, another did; the one held for some time.
 
     Args:
-        for_s: least time for which the condition must have held in all.
-    """
+        for_s: least time for which the condition must have held in all."""
     held_s, before_s = 0.0, trace[0].time_s
     for at, moment in enumerate(trace):
         until = trace[: at + 1]

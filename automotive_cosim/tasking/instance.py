@@ -94,8 +94,7 @@ def draw(
 
     Raises:
         UnknownNameError: the task has no such half, or the cockpit has nothing of that kind.
-        UserError: the driver has no words for it in that language.
-    """
+        UserError: the driver has no words for it in that language."""
     phrasings, ways = len(task.templates), drawn(task)
     order = Draws(task.id, 0)
     phrasing = int(order.rng(Purpose.PHRASING).permutation(phrasings)[(number + redrawn) % phrasings])

@@ -55,8 +55,7 @@ def keep(
     Args:
         kind: what is made.
         given: how many arguments come before the values.
-        writes: of the values, see ``Check.writes``.
-    """
+        writes: of the values, see ``Check.writes``."""
     name, asked = holds.__name__.rstrip("_"), signature(holds)
     own = asked.replace(parameters=list(asked.parameters.values())[given:])
 

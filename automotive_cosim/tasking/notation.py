@@ -50,14 +50,7 @@ from automotive_cosim.tasking.moves import (
 )
 from automotive_cosim.tasking.named import ROWS
 from automotive_cosim.tasking.parameters import Param
-from automotive_cosim.tasking.triggers import (
-    All,
-    Not,
-    Situation,
-    signal_above,
-    signal_below,
-    signal_has,
-)
+from automotive_cosim.tasking.triggers import All, Not, Situation, signal_above, signal_below, signal_has
 
 LONGEST_WAIT_S = 10
 """The longest wait of one action; longer ones are several."""

@@ -102,9 +102,8 @@ def _field_names(of: type) -> tuple[str, ...] | None:
 def named_in(text: str) -> Iterator[str]:
     """The names in braces in a text.
 
-    Raises:
-        ValueError: what stands in braces is more than a name, and how a number is written: an attribute, a width.
-    """
+    Raises ValueError: what stands in braces is more than a name, and how a number is written: an attribute, a
+    width."""
     for _, name, width, conversion in _PARSE(text):
         if name is not None:
             if conversion or not _NAME.fullmatch(name) or not _FORM.fullmatch(width or ""):

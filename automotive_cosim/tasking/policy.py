@@ -126,8 +126,7 @@ class Conduct:
         """Whether the agent had looked at something before an act, on the screen or by a function.
 
         Args:
-            keys: beginnings of the keys of what such a screen shows.
-        """
+            keys: beginnings of the keys of what such a screen shows."""
         return any(_shows(step, keys) or _reads(step, keys, facts) for step in self.steps[: act.number])
 
 

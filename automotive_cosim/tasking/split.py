@@ -30,8 +30,7 @@ def split_of(task: Task, seed: int, *, held_out: bool = False, redrawn: int = 0)
     Args:
         seed: the episode's seed, which draws the phrasing.
         held_out: whether the held-out phrasing is used, whatever is drawn.
-        redrawn: how many phrasings further than the seed's.
-    """
+        redrawn: how many phrasings further than the seed's."""
     if held_out or draw(task, "first", seed, redrawn=redrawn).held_out:
         return Split.TEST
     return split_of_seed(seed)

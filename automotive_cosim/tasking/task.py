@@ -367,8 +367,7 @@ class Task:
 
         ``ask`` (what is meant must be asked), ``navigate`` (leave the screen), ``repeat`` (the same control until
         it is right), ``slide``, ``type``, ``alert``, ``decline``, ``infer`` (implicit words), ``place`` (place
-        decides), ``prefer`` (a stated preference), ``weigh`` (needs against each other).
-        """
+        decides), ``prefer`` (a stated preference), ``weigh`` (needs against each other)."""
         halves = [self.half(name) for name in self.halves]
         moves = [move for half in halves for move in half.moves]
         found = {

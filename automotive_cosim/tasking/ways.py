@@ -97,8 +97,7 @@ def units_in(make: Make, task: Task) -> Mapping[str, str]:
     """The make's units at the hand-over, by path of the signal.
 
     They stay those of home where the task is about them, or asks for figures in an answer; and degrees, where it
-    names half degrees, which whole degrees Fahrenheit do not tell apart.
-    """
+    names half degrees, which whole degrees Fahrenheit do not tell apart."""
     halves = [task.half(name) for name in task.halves]
     every = [str(move) for half in halves for move in chain(half.moves, *half.ways, *half.slips)]
     taken = {path for key, path in UNITS.items() for move in every if key in move}

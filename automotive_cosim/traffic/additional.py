@@ -67,8 +67,7 @@ def read_mapped(configuration: Configuration, read: Network | None = None) -> Ne
         read: the network without it, if it has been read.
 
     Raises:
-        ScenarioError: a file is missing or invalid; a polygon with its line.
-    """
+        ScenarioError: a file is missing or invalid; a polygon with its line."""
     kept = _READ.get()
     if kept is None:
         return _mapped(configuration, read or read_network(configuration.net))
@@ -132,8 +131,7 @@ def read_ground(
         also: called with each element of these files.
 
     Raises:
-        ScenarioError: a file is no XML, or a polygon has no valid shape.
-    """
+        ScenarioError: a file is no XML, or a polygon has no valid shape."""
     found: list[GroundArea] = []
     reference = None if roads.projection is None else GeoReference(roads)
     files, place = list(configuration.files.get("additional-files", ())), FilePlace()
@@ -165,11 +163,7 @@ def kind_of(polygon_type: str) -> GroundKind | None:
 
 
 def _area(attributes: dict[str, str], reference: GeoReference | None) -> GroundArea | None:
-    """The polygon as an area; None if it is none that is drawn.
-
-    Raises:
-        ValueError: its shape is invalid.
-    """
+    """The polygon as an area; None if it is none that is drawn. Raises ValueError: its shape is invalid."""
     shape = _shape(attributes.get("shape", ""))
     is_geographic, is_filled = _flag(attributes, "geo"), _flag(attributes, "fill")
     kind = kind_of(attributes.get("type", ""))

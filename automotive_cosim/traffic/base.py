@@ -143,17 +143,13 @@ class Traffic(Protocol):
         """Starts the next call, which must be ``advance`` of that duration, in the background while the caller does
         something else. Does nothing if it runs in this process, or has been started already.
 
-        Raises:
-            TrafficError: the simulation died.
-        """
+        Raises TrafficError: the simulation died."""
         ...
 
     def advance(self, duration_s: float) -> Advance:
         """Lets the traffic run for ``duration_s``, or until the ego's drive ends.
 
-        Raises:
-            TrafficError: the simulation failed; the message names the cause.
-        """
+        Raises TrafficError: the simulation failed; the message names the cause."""
         ...
 
     def request(self, request: RoadRequest) -> Answer:
@@ -168,24 +164,17 @@ class Traffic(Protocol):
             age_s: how long ago those five minutes ended, at most ``contracts.OLDEST_NEWS_S``.
 
         Raises:
-            TrafficError: the simulation failed.
-        """
+            TrafficError: the simulation failed."""
         ...
 
     def look(self) -> RoadSnapshot:
         """Every vehicle around the ego now, and the traffic lights. It has no side effects on the simulation.
 
-        Raises:
-            TrafficError: the simulation failed.
-        """
+        Raises TrafficError: the simulation failed."""
         ...
 
     def shapes(self) -> RoadShapes:
-        """The lanes and junctions of the network.
-
-        Raises:
-            TrafficError: the simulation failed.
-        """
+        """The lanes and junctions of the network. Raises TrafficError: the simulation failed."""
         ...
 
     def branch(self) -> Traffic:
@@ -206,8 +195,7 @@ class Simulation(Protocol):
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
             NoRoomError: no gap opened for it.
-            TrafficError: the simulation failed.
-        """
+            TrafficError: the simulation failed."""
         ...
 
     def close(self) -> None:

@@ -28,11 +28,7 @@ class Generators:
     """SUMO's random number generators in this process."""
 
     def __init__(self, sumo: LibSumo) -> None:
-        """Finds them.
-
-        Raises:
-            SetupError: the library does not export them as expected.
-        """
+        """Finds them. Raises SetupError: the library does not export them as expected."""
         try:
             library = ctypes.CDLL(sumo.library_file)
             self._seed, self._draw = getattr(library, _SEED), getattr(library, _DRAW)

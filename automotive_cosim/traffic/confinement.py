@@ -58,8 +58,7 @@ def confine(folders: Iterable[Path]) -> bool:
     """Lets this thread, and what it starts, write only below some folders and open no connection.
 
     Returns:
-        Whether the kernel does so.
-    """
+        Whether the kernel does so."""
     offered = version()
     if not offered:
         return False

@@ -104,8 +104,7 @@ class Congestion:
         Args:
             vehicles: the lane, inside a junction or not, the speed in m/s and the wanted speed of each vehicle that
                 drives as cars do; those on lanes that are closed to cars are left out here.
-            free: what a drive without traffic is like.
-        """
+            free: what a drive without traffic is like."""
         self._edges = network.edges
         self._order = {edge_id: number for number, edge_id in enumerate(network.edges)}
         self._driving = vehicles
@@ -178,8 +177,7 @@ class Congestion:
         """What was seen in ``WINDOW_S`` on each lane with any traffic.
 
         Args:
-            age_s: how long ago that time ended, at most ``OLDEST_NEWS_S``.
-        """
+            age_s: how long ago that time ended, at most ``OLDEST_NEWS_S``."""
         sums: dict[str, Tally] = {}
         newest, count = round(age_s / SAMPLE_PERIOD_S), round(WINDOW_S / SAMPLE_PERIOD_S)
         for lanes in islice(reversed(self._samples), newest, newest + count):
@@ -295,8 +293,7 @@ class Route:
 
         Args:
             index: the edge of the route, or the last one before the junction that the car is in.
-            position_m: from the start of the route.
-        """
+            position_m: from the start of the route."""
         leg = self._legs[index]
         if index not in self._rest:
             self._rest[index] = self.edge_ids[index:]

@@ -26,9 +26,7 @@ class Convoy:
     def drive(self, car: str = EGO) -> EgoLoop:
         """The drive of a car.
 
-        Raises:
-            TrafficError: it has not entered the traffic, or its cockpit is no longer used.
-        """
+        Raises TrafficError: it has not entered the traffic, or its cockpit is no longer used."""
         if car not in self._drives:
             raise TrafficError(f"no equipped car {car!r} is in the traffic")
         return self._drives[car]
@@ -69,8 +67,7 @@ class Convoy:
             beat: called after every step.
 
         Returns:
-            What passed for each of those cars, and the cars that have entered the traffic.
-        """
+            What passed for each of those cars, and the cars that have entered the traffic."""
         states: dict[str, list[Instant]] = {car: [] for car in of}
         events: dict[str, list[Event]] = {car: [] for car in states}
         entered: list[str] = []

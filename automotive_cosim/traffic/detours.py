@@ -21,8 +21,7 @@ class Detours:
 
     Each takes the way that SUMO's rerouting device would take (``sumo.reroute``). If there is none, or its
     destination is closed, its trip ends on the road before the closed one that it reaches soonest. SUMO leaves out
-    who would set out on a closed road; both are counted.
-    """
+    who would set out on a closed road; both are counted."""
 
     def __init__(self, sumo: LibSumo, network: Network) -> None:
         self._sumo = sumo

@@ -48,8 +48,7 @@ class EgoLoop:
             driver: its driver.
             now: the first instant.
             take: SUMO goes on driving it as it does until the cockpit asks for something other than a route; then
-                this is called, and from there on the driver drives. None where he does from the first instant.
-        """
+                this is called, and from there on the driver drives. None where he does from the first instant."""
         self._road = road
         self._driver = driver
         self._now = now

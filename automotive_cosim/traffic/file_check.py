@@ -81,8 +81,7 @@ def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file
 
     Raises:
         ScenarioError: it is not such a file, has an element or a device's parameter that is not known to write
-            nothing, or names a file that is missing; with its line.
-    """
+            nothing, or names a file that is missing; with its line."""
     reader, seen = _Reader(path, None, "", (path.resolve(),), also), sha256()
     encoding = _scanned(reader, what, hashed=seen.update)
     return b"" if reader.changed or reader.found or encoding not in SHARED_ENCODINGS else seen.digest()
@@ -91,9 +90,7 @@ def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file
 def files_in(path: Path) -> tuple[Path, ...]:
     """The files that a network, a route file or an additional file names, and those that they name.
 
-    Raises:
-        ScenarioError: see ``vet``.
-    """
+    Raises ScenarioError: see ``vet``."""
     found: list[Path] = []
     _vet(path, None, "", (), found=found)
     return tuple(found)
@@ -121,8 +118,7 @@ def copy_vetted(
         The copy's name in the folder.
 
     Raises:
-        see ``vet``.
-    """
+        see ``vet``."""
     if known and _copied(path, folder / f"{name}.xml") == known:
         return f"{name}.xml"
     return _vet(path, folder, name, (), what, also)
@@ -140,11 +136,7 @@ def _copied(path: Path, copy: Path) -> bytes:
 
 
 def refuse_variables(name: str, where: str) -> None:
-    """Refuses a file's name in which SUMO would replace a variable.
-
-    Raises:
-        ScenarioError: it is one.
-    """
+    """Refuses a file's name in which SUMO would replace a variable. Raises ScenarioError: it is one."""
     if "$" in name:
         raise ScenarioError(f"{where} names {name[:200]!r}: variables ($) are not replaced here; write it out")
 

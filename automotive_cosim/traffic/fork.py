@@ -76,8 +76,7 @@ class Forked:
         Raises:
             ScenarioError: the scenario cannot be loaded.
             SetupError: libsumo is missing or unsuitable, or the system is not Linux.
-            TrafficError: the process died or hung.
-        """
+            TrafficError: the process died or hung."""
         if sys.platform != "linux":
             raise SetupError(NO_FORK)
         setup = Setup(scenario, seed, allow_unprojected, outputs, flow_s)
@@ -91,8 +90,7 @@ class Forked:
             ScenarioError: its trip has no route, or its edges are not in the network.
             UnknownNameError: no such driver.
             NoRoomError: no gap opened for it; another drive can still depart.
-            TrafficError: the simulation died or hung; another drive can still depart.
-        """
+            TrafficError: the simulation died or hung; another drive can still depart."""
         profile(plan.driver)
         if self._is_closed:
             raise TrafficError("the simulation is closed")
@@ -105,28 +103,19 @@ class Forked:
             call: a module's function, which is sent by its name, of what runs there and the arguments.
 
         Raises:
-            TrafficError: SUMO stopped at an error, died or hung.
-        """
+            TrafficError: SUMO stopped at an error, died or hung."""
         answer: T = self._source.warm_call("call", call, arguments, named)
         return answer
 
     def road(self) -> RemoteRoad:
-        """A copy of the traffic in which cars can be equipped.
-
-        Raises:
-            TrafficError: the simulation died or hung.
-        """
+        """A copy of the traffic in which cars can be equipped. Raises TrafficError: the simulation died or hung."""
         road = RemoteRoad(self._source, self._source.copied())
         road.is_held = True
         road.run(0.0)
         return road
 
     def copy(self) -> RemoteCopy:
-        """A copy of the traffic without an ego.
-
-        Raises:
-            TrafficError: the simulation died or hung.
-        """
+        """A copy of the traffic without an ego. Raises TrafficError: the simulation died or hung."""
         return self._source.without_ego()
 
     @property
@@ -160,9 +149,7 @@ class _Remote:
     def begin(self, call: Callable[Concatenate[Running, P], object], *arguments: P.args, **named: P.kwargs) -> None:
         """Begins to call a function that takes long and drives on; ``ended`` gives its answer.
 
-        Raises:
-            TrafficError: it died.
-        """
+        Raises TrafficError: it died."""
         self._process.send("run", call, arguments, named)
         self._is_busy = True
 
@@ -173,8 +160,7 @@ class _Remote:
             progress: called with how much the function said to be done, and of how much.
 
         Raises:
-            TrafficError: SUMO stopped at an error, died or hung.
-        """
+            TrafficError: SUMO stopped at an error, died or hung."""
         state, answer = self._process.receive(progress)
         self._is_busy = False
         self._drove_on(state)
@@ -203,8 +189,7 @@ class RemoteRoad(_Remote):
     """The traffic in a process of its own, and the equipped cars in it, each of which is a drive.
 
     The car that asks first lets the road run for all. The others are behind until they have driven as far, and
-    what they then ask the road for would come too late, so let all drive to one instant before any asks.
-    """
+    what they then ask the road for would come too late, so let all drive to one instant before any asks."""
 
     def __init__(self, source: _Source, process: RemoteProcess, original: RemoteTraffic | None = None) -> None:
         """Takes over a process.
@@ -213,8 +198,7 @@ class RemoteRoad(_Remote):
             source: where its copies come from.
             process: the traffic.
             original: the drive that its only car continues without the requests of that drive's cockpit: what the
-                other cars of the original ask for is asked for here too, as far as the original has driven.
-        """
+                other cars of the original ask for is asked for here too, as far as the original has driven."""
         super().__init__(process)
         self.source = source
         self.step_s = source.step_s
@@ -238,8 +222,7 @@ class RemoteRoad(_Remote):
 
         Raises:
             ScenarioError: its trip has no route, its edges are not in the network, or there is such a vehicle.
-            TrafficError: the simulation died.
-        """
+            TrafficError: the simulation died."""
         self._process.call("send", car, plan)
 
     def equip(self, car: str, plan: EgoPlan) -> RemoteTraffic:
@@ -247,8 +230,7 @@ class RemoteRoad(_Remote):
 
         Raises:
             ScenarioError: there is no such vehicle on a road for cars.
-            TrafficError: the simulation died.
-        """
+            TrafficError: the simulation died."""
         return self.take(car, self._process.call("equip", car, plan))
 
     def entered(self) -> tuple[RemoteTraffic, ...]:
@@ -303,9 +285,7 @@ class RemoteRoad(_Remote):
     def run(self, duration_s: float) -> None:
         """Lets the traffic run, and tells every car what it has passed.
 
-        Raises:
-            TrafficError: the simulation failed.
-        """
+        Raises TrafficError: the simulation failed."""
         for part_s in self._parts(duration_s):
             if self._started_s is None:
                 self._process.send("advance", part_s, tuple(self._cars))
@@ -403,9 +383,7 @@ class RemoteTraffic(_Remote):
     def request(self, request: RoadRequest) -> Answer:
         """See ``Traffic.request``.
 
-        Raises:
-            RuntimeError: the road has run further for another car; drive on as far before asking.
-        """
+        Raises RuntimeError: the road has run further for another car; drive on as far before asking."""
         if self._ahead:
             raise RuntimeError(
                 f"car {self.car!r} cannot ask in the past; the road has run to {self.road.time_s:g} s"
@@ -458,11 +436,7 @@ class _Source:
     """The source of copies of a warm simulation."""
 
     def __init__(
-        self,
-        setup: Setup,
-        timeout_s: float,
-        progress: WarmUpProgress | None,
-        alike: _Source | None,
+        self, setup: Setup, timeout_s: float, progress: WarmUpProgress | None, alike: _Source | None
     ) -> None:
         self._setup = setup
         self._timeout_s = timeout_s
@@ -577,8 +551,7 @@ class Simulations:
 
         Args:
             count_limit: maximum number of simulations.
-            memory_limit_bytes: maximum of their total memory; at least one is kept.
-        """
+            memory_limit_bytes: maximum of their total memory; at least one is kept."""
         self._count_limit = count_limit
         self._memory_limit_bytes = memory_limit_bytes
         self._kept: OrderedDict[Setup, Forked] = OrderedDict()
@@ -597,8 +570,7 @@ class Simulations:
         """The warm simulation of a scenario and seed, made now if there is none; the pool closes it.
 
         Raises:
-            see ``Forked``.
-        """
+            see ``Forked``."""
         setup = Setup(scenario, seed, allow_unprojected)
         if setup not in self._kept:
             same = (kept for other, kept in self._kept.items() if other.traffic == setup.traffic)
@@ -614,8 +586,7 @@ class Simulations:
         """Like ``warm``, for threads: while one makes a simulation, the others wait; none in use is closed.
 
         Raises:
-            see ``Forked``.
-        """
+            see ``Forked``."""
         with self._lock:
             simulation = self.warm(scenario, seed, progress)
             self._held.append(simulation)

@@ -52,8 +52,7 @@ class SharedFuture:
 
         Args:
             traffic: the drive, to be used only through this object.
-            reseed: gives the driver of a copy, who was asked for nothing yet, the reactions of another seed.
-        """
+            reseed: gives the driver of a copy, who was asked for nothing yet, the reactions of another seed."""
         self.begin = traffic
         self.reseed = reseed
         self._step_s = step_s
@@ -74,9 +73,7 @@ class SharedFuture:
     def known(self, done: int, duration_s: float) -> list[Passed]:
         """The steps of a duration after so many steps; fewer if the drive ends.
 
-        Raises:
-            TrafficError: the simulation failed.
-        """
+        Raises TrafficError: the simulation failed."""
         until = done + round(duration_s / self._step_s)
         missing = until - len(self._known)
         if missing > 0 and (not self._known or self._known[-1][0].end is None):
@@ -86,11 +83,7 @@ class SharedFuture:
         return self._known[done:until]
 
     def at(self, done: int) -> Traffic:
-        """A simulation of its own, after so many steps.
-
-        Raises:
-            TrafficError: the simulation failed.
-        """
+        """A simulation of its own, after so many steps. Raises TrafficError: the simulation failed."""
         if self._front is not None and done == len(self._known):
             return self._front.branch()
         stop, every = self._stop_before(done), round(STOP_S / self._step_s)
@@ -209,8 +202,7 @@ class KnownDrives:
         """Nothing is known yet.
 
         Args:
-            simulations: the warm ones, which the caller closes.
-        """
+            simulations: the warm ones, which the caller closes."""
         self._simulations = simulations
         self._futures: OrderedDict[Hashable, SharedFuture] = OrderedDict()
 

@@ -50,9 +50,7 @@ def in_full(location: Mapping[str, str]) -> str:
     For codes that count northings first, netconvert 1.28 writes northings as x, which makes the network its own
     mirror image: the string then says so (``TURNED``), as PROJ's does of southings, and ``doubt`` tells.
 
-    Raises:
-        ValueError: an attribute contains something other than numbers.
-    """
+    Raises ValueError: an attribute contains something other than numbers."""
     given = location.get("projParameter", "!")
     if given in ("!", "-") or given.startswith(("+", "proj=")):
         return given
@@ -190,8 +188,7 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
         location: the attributes of its ``<location>``.
 
     Raises:
-        ValueError: its original coordinates are no numbers.
-    """
+        ValueError: its original coordinates are no numbers."""
     if network.projection is None:
         return "has no projection"
     if OTHER_AXES.search(network.projection):

@@ -80,21 +80,13 @@ class IncidentTools:
             self.route_changed = True
 
     def edge(self, edge_id: str) -> Edge:
-        """An edge of the network.
-
-        Raises:
-            ScenarioError: there is no such edge for cars.
-        """
+        """An edge of the network. Raises ScenarioError: there is no such edge for cars."""
         if edge_id not in self.network.edges:
             raise ScenarioError(f"[[incidents]]: the network has no edge {edge_id!r} that cars may use")
         return self.network.edges[edge_id]
 
     def lane(self, edge_id: str, lane: int) -> str:
-        """A lane of an edge, counted from the kerb.
-
-        Raises:
-            ScenarioError: the edge has fewer lanes.
-        """
+        """A lane of an edge, counted from the kerb. Raises ScenarioError: the edge has fewer lanes."""
         lanes = self.edge(edge_id).lane_ids
         if not 0 <= lane < len(lanes):
             raise ScenarioError(

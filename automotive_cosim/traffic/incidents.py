@@ -37,11 +37,7 @@ class Incidents:
     """The incidents of one simulation."""
 
     def __init__(self, tools: IncidentTools, scenario: Scenario) -> None:
-        """Reads the scenario's incidents.
-
-        Raises:
-            ScenarioError: one of them does not fit the network.
-        """
+        """Reads the scenario's incidents. Raises ScenarioError: one of them does not fit the network."""
         self._tools = tools
         self._entries = [_Entry(incident, staged(tools, incident), tools) for incident in scenario.incidents]
         self._others: list[IncidentTools] = []
@@ -79,9 +75,7 @@ class Incidents:
     def set_off(self, plan: EgoPlan, sensor: Sensor, now_s: float) -> None:
         """Takes note of the ego's departure: from now on its trip, its route and its clock count.
 
-        Raises:
-            ScenarioError: an incident of the plan does not fit the network.
-        """
+        Raises ScenarioError: an incident of the plan does not fit the network."""
         self._tools.sensor = sensor
         for incident in plan.incidents:
             self.add(incident)
@@ -97,18 +91,14 @@ class Incidents:
     def add(self, incident: Incident) -> None:
         """One more incident; its times count like those of the others.
 
-        Raises:
-            ScenarioError: it does not fit the network.
-        """
+        Raises ScenarioError: it does not fit the network."""
         self._entries.append(_Entry(incident, staged(self._tools, incident), self._tools))
 
     def join(self, plan: EgoPlan, car: str, sensor: Sensor, now_s: float) -> None:
         """Takes note of another equipped car that has departed: what its plan stages is staged around it. The clock
         stays that of the first.
 
-        Raises:
-            ScenarioError: an incident of the plan does not fit the network.
-        """
+        Raises ScenarioError: an incident of the plan does not fit the network."""
         tools = self._tools.around(car, sensor)
         self._others.append(tools)
         self._entries += [_Entry(each, staged(tools, each), tools, now_s) for each in plan.incidents]
@@ -130,8 +120,7 @@ class Incidents:
         """Active incidents that a live-traffic service knows of.
 
         Args:
-            slow: edges that it knows to be slow, and their relative speed.
-        """
+            slow: edges that it knows to be slow, and their relative speed."""
         going_on = (entry.staged for entry in self._entries if entry.has_begun and not entry.is_over)
         return tuple(seen for one in going_on if (seen := one.reported(slow)) is not None)
 

@@ -48,8 +48,7 @@ def write_mirrored(net: Path, target: Path, image: RoadNetwork) -> None:
         image: the image as ``mirrored`` has it.
 
     Raises:
-        ScenarioError: the file is not XML.
-    """
+        ScenarioError: the file is not XML."""
     sum_m, lefthand = _sum_m(image), "true" if image.left_hand else "false"
     with drafted(target) as written:
         file = getwriter("utf-8")(written)

@@ -13,10 +13,7 @@ from functools import cache
 from automotive_cosim.formats.shipped import shipped_table
 
 ENGLISH = "en"
-_KINDS = (
-    ("Motorway", frozenset({"motorway"})),
-    ("Main road", frozenset({"trunk", "primary"})),
-)
+_KINDS = (("Motorway", frozenset({"motorway"})), ("Main road", frozenset({"trunk", "primary"})))
 """What a street is called by the highest class of its edges, the highest first."""
 
 
@@ -46,8 +43,7 @@ def local_names(streets: Iterable[tuple[str, str]], language: str) -> Mapping[st
 
     Args:
         streets: name and road class of every edge; a street is the edges of one name. Those without are left out.
-        language: ISO 639-1 code; without a list of its names, they are English.
-    """
+        language: ISO 639-1 code; without a list of its names, they are English."""
     classes: dict[str, set[str]] = {}
     for name, road_class in streets:
         if name:

@@ -94,9 +94,7 @@ FOR_TRAINS = frozenset(("rail_crossing", "rail_signal"))
 def quantity(text: str, least: float = -LARGEST) -> float:
     """A number of a network.
 
-    Raises:
-        ValueError: it is not a number, not finite, below ``least`` or impossibly large.
-    """
+    Raises ValueError: it is not a number, not finite, below ``least`` or impossibly large."""
     try:
         number = float(text)
     except ValueError:
@@ -322,8 +320,7 @@ class NetworkReader:
 
         Args:
             path: the file, for errors.
-            known: what it was when another process read it, which holds until an element comes.
-        """
+            known: what it was when another process read it, which holds until an element comes."""
         self.path = path
         self.known = known
         self._edge: Attributes = {}
@@ -352,8 +349,7 @@ class NetworkReader:
         Raises:
             ScenarioError: it is no network's.
             LookupError: it, or the edge before it, lacks something, or
-            ValueError: something of it is wrong; ``scan`` says so.
-        """
+            ValueError: something of it is wrong; ``scan`` says so."""
         if depth == EDGE_DEPTH:
             if self._edge:
                 self._take_edge()
@@ -384,11 +380,7 @@ class NetworkReader:
 
     @without_collection()
     def network(self) -> Network:
-        """The network, once all is read.
-
-        Raises:
-            ScenarioError: it has no road for cars, or no valid location.
-        """
+        """The network, once all is read. Raises ScenarioError: it has no road for cars, or no valid location."""
         if self.known is not None:
             known: Network = pickle.loads(self.known.pickled)
             return known
@@ -440,9 +432,7 @@ class NetworkReader:
 def read_network(path: Path) -> Network:
     """Reads a network.
 
-    Raises:
-        ScenarioError: the file is missing, is not a SUMO network, is truncated, or has no road for cars.
-    """
+    Raises ScenarioError: the file is missing, is not a SUMO network, is truncated, or has no road for cars."""
     reader, ended = NetworkReader(path), list[str]()
     count = itertools.count()
 
@@ -456,9 +446,7 @@ def read_network(path: Path) -> Network:
 def drives_on_left(path: Path) -> bool:
     """Whether a network's traffic keeps left, read from its first element.
 
-    Raises:
-        ScenarioError: the file is missing or not XML.
-    """
+    Raises ScenarioError: the file is missing or not XML."""
     return read_root(path, error=ScenarioError).get("lefthand") in ("true", "1")
 
 
@@ -570,9 +558,7 @@ def _crossings(reading: NetworkReader) -> dict[str, dict[str, Crossing]]:
 
     A connection from or to a lane that is closed to cars is none for them.
 
-    Raises:
-        ScenarioError: a connection names an edge that the network does not have.
-    """
+    Raises ScenarioError: a connection names an edge that the network does not have."""
     lanes = {lane for edge in reading.edges.values() for lane in edge.lane_ids}
     links: dict[str, dict[str, list[_Connection]]] = {}
     for link in reading.connections:

@@ -149,17 +149,13 @@ class Configuration:
     def begin_s(self) -> float:
         """Simulation time at which the demand starts.
 
-        Raises:
-            ScenarioError: it is neither seconds nor a clock time.
-        """
+        Raises ScenarioError: it is neither seconds nor a clock time."""
         return self.number("begin", 0.0)
 
     def number(self, option: str, otherwise: float, most: float = 1e9) -> float:
         """The value of an option; times may be written ``[days:]hours:minutes:seconds``.
 
-        Raises:
-            ScenarioError: it is not a number, or beyond ``most`` either way.
-        """
+        Raises ScenarioError: it is not a number, or beyond ``most`` either way."""
         text = self.options.get(option, "")
         try:
             parts = [float(part) for part in text.split(":")] if text else [otherwise]
@@ -203,9 +199,7 @@ class Copied(Configuration):
 def read_configuration(path: Path) -> Configuration:
     """Reads a ``.sumocfg``; a plain network counts as one that names nothing else.
 
-    Raises:
-        ScenarioError: it is not XML, names no network, or names a missing file.
-    """
+    Raises ScenarioError: it is not XML, names no network, or names a missing file."""
     if read_root(path, error=ScenarioError).tag == "net":
         return Configuration(path, path.absolute(), files={"net-file": (path.absolute(),)})
     reader = _Reader(path)
@@ -301,8 +295,7 @@ def copied(configuration: Configuration, folder: Path, network: NetworkReader | 
         folder: a folder for the copies, and for nothing else but what SUMO writes.
 
     Raises:
-        ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``).
-    """
+        ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``)."""
     known = network.known.digest if network and network.known else b""
     net = folder / copy_vetted(configuration.net, folder, "net-file0", network, FORM, known)
     distributions = _Distributions()
@@ -357,9 +350,7 @@ def takes_any_route(configuration: Configuration, network: Network) -> bool:
 def stated_and_set(configuration: Configuration, sumo: Sumo) -> dict[str, tuple[float, float]]:
     """What a configuration states, with SUMO's default if it does not, and what a scenario has, by option.
 
-    Raises:
-        ScenarioError: the configuration states no number.
-    """
+    Raises ScenarioError: the configuration states no number."""
     number = configuration.number
     return {
         "step-length": (number("step-length", SUMO_STEP_S), sumo.step_length_s),
@@ -385,8 +376,7 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
     Args:
         configuration: the scenario's own, with copies of its files.
         setup: seed, and the scenario's step lengths, scale and rerouting.
-        network: the configuration's as it drives, if it has been read.
-    """
+        network: the configuration's as it drives, if it has been read."""
     options = _given(configuration, setup.scenario) | QUIET | UNCHECKED
     for name, value in options.items():
         if name.endswith(EGO_LISTS):

@@ -61,9 +61,7 @@ class Pedals(Protocol):
     def pull_over(self, state: DrivingState, for_s: float, within_m: float = math.inf) -> str:
         """Stops at the side as soon as possible, for a time, and no farther on than that; returns where.
 
-        Raises:
-            RefusedError: there is no place for it.
-        """
+        Raises RefusedError: there is no place for it."""
         ...
 
     def is_parked(self) -> bool:
@@ -73,8 +71,7 @@ class Pedals(Protocol):
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
         """Moves a number of lanes away from the kerb, or towards it if negative, and stays there for a time.
 
-        False if there is no such lane here.
-        """
+        False if there is no such lane here."""
         ...
 
     def standing_ahead_m(self) -> float | None:
@@ -92,7 +89,5 @@ class Pedals(Protocol):
     def reroute(self, request: Reroute, state: DrivingState) -> str:
         """Takes another route; returns a description of it.
 
-        Raises:
-            RefusedError: there is none, or it is too late to take it.
-        """
+        Raises RefusedError: there is none, or it is too late to take it."""
         ...

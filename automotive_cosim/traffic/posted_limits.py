@@ -158,9 +158,7 @@ def in_force(limits: Sequence[TimedLimit], local_time: datetime, weather: str = 
 def sign_mps(sign: str) -> float | None:
     """The speed of a sign (``"50"``, ``"30 mph"``); None for ``"none"``.
 
-    Raises:
-        ValueError: it is not a ``maxspeed``.
-    """
+    Raises ValueError: it is not a ``maxspeed``."""
     if sign == "none":
         return None
     number, _, unit = sign.partition(" ")
@@ -173,8 +171,7 @@ def timed_limits(conditional: str) -> tuple[tuple[TimedLimit, ...], tuple[str, .
     """Reads a ``maxspeed:conditional``.
 
     Returns:
-        The limits by the clock, and the parts that were not understood, verbatim.
-    """
+        The limits by the clock, and the parts that were not understood, verbatim."""
     found: list[TimedLimit] = []
     unread: list[str] = []
     for sign, condition, text in clauses(conditional):
@@ -226,9 +223,7 @@ def is_understood(condition: str) -> bool:
 def read_hours(condition: str) -> list[Hours]:
     """When a condition holds: at any of these.
 
-    Raises:
-        ValueError: it is none on the clock, the calendar or the weather.
-    """
+    Raises ValueError: it is none on the clock, the calendar or the weather."""
     condition, weather = _weather(_AND_HOLIDAYS.sub("", _DASH.sub("-", condition)))
     found: list[Hours] = []
     later: list[Hours] = []

@@ -59,8 +59,7 @@ class Server:
 
         Args:
             channel: to the program that uses the simulation.
-            hang_limit_s: processor time after which an unfinished step ends the process.
-        """
+            hang_limit_s: processor time after which an unfinished step ends the process."""
         self._channel = channel
         self._hang_limit_s = hang_limit_s
         self._loaded: Running | None = None
@@ -109,8 +108,7 @@ class Server:
         known one.
 
         From here on this process and its copies can write only to the scratch folder, which the other side removes
-        when this is done, and beside SUMO's outputs, if the kernel can see to that.
-        """
+        when this is done, and beside SUMO's outputs, if the kernel can see to that."""
         self._set_alarm(LOADING_LIMIT_S)
         load_library()  # which writes where Python keeps its compiled modules
         confine([scratch] if setup.outputs is None else [scratch, setup.outputs.parent])
@@ -223,8 +221,7 @@ class Server:
     def _set_alarm(self, limit_s: float | None = None) -> None:
         """The kernel ends the process after the limit, even if nobody is left to notice that it hangs.
 
-        One that waits for good uses no processor time, so the wall clock ends it, much later.
-        """
+        One that waits for good uses no processor time, so the wall clock ends it, much later."""
         limit_s = limit_s or self._hang_limit_s
         signal.setitimer(signal.ITIMER_PROF, limit_s)
         signal.setitimer(signal.ITIMER_REAL, WAITING_FACTOR * limit_s)
@@ -237,8 +234,7 @@ class Server:
 def reopen_files() -> None:
     """Gives this process its own position in every file it was forked with.
 
-    SUMO reads its demand in pieces; with a shared position, the first reader would take the others' traffic.
-    """
+    SUMO reads its demand in pieces; with a shared position, the first reader would take the others' traffic."""
     for entry in list(DESCRIPTORS.iterdir()):
         descriptor = int(entry.name)
         try:
@@ -255,8 +251,7 @@ def reopen_files() -> None:
 def copy_outputs(folder: Path) -> None:
     """Gives this process its own copies, in ``folder``, of the files that it was forked with to write to.
 
-    What SUMO has not written yet is also in this process's memory, and goes into the copy.
-    """
+    What SUMO has not written yet is also in this process's memory, and goes into the copy."""
     for entry in list(DESCRIPTORS.iterdir()):
         descriptor = int(entry.name)
         try:

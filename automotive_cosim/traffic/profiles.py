@@ -60,16 +60,11 @@ tailgating one keeps a quarter of it. This one and the pressing one, who look on
 late as SUMO's model does: from 50 km/h at 21 m. Reaction times lie around the 1.25 s that Green (2000, "How long
 does it take to stop?") gives for a common unexpected signal, shorter for alert drivers (0.7 s when expected),
 longer for drowsy ones. The speeds of the hurried and the tailgating driver, the evenness, the compliance and the
-caution are chosen, not measured.
-"""
+caution are chosen, not measured."""
 
 
 def profile(name: str) -> DriverProfile:
-    """The profile of that name.
-
-    Raises:
-        UnknownNameError: there is no such profile.
-    """
+    """The profile of that name. Raises UnknownNameError: there is no such profile."""
     if name not in PROFILES:
         raise UnknownNameError("driver", name, PROFILES)
     return PROFILES[name]

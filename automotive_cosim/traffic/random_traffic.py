@@ -32,8 +32,7 @@ def write(path: Path, network: Network, per_km_h: float, seed: int) -> None:
 
     Args:
         per_km_h: departures per hour and kilometre of lane.
-        seed: seed of their starts and ends.
-    """
+        seed: seed of their starts and ends."""
     rng = np.random.default_rng(seed)
     edges = list(network.edges.values())
     weights = np.array([edge.length_m * len(edge.lane_ids) for edge in edges])

@@ -28,8 +28,7 @@ Noun = TypeVar("Noun")
 def maker(kind: type[Noun]) -> type[Noun]:
     """A function that makes records of a frozen dataclass with slots from all their fields, in order.
 
-    It is typed as the class, so its arguments are checked, but has neither defaults nor keywords.
-    """
+    It is typed as the class, so its arguments are checked, but has neither defaults nor keywords."""
     twin = make_dataclass(f"{kind.__name__}Twin", [field.name for field in fields(cast(Any, kind))], slots=True)
 
     def make(*values: object) -> object:

@@ -33,8 +33,7 @@ def redraw(path: Path, target: Path, seed: int) -> Path:
         seed: seed of the day.
 
     Raises:
-        ScenarioError: it cannot be read.
-    """
+        ScenarioError: it cannot be read."""
     rng = np.random.default_rng([seed, 8])
     root = read_tree(path, error=ScenarioError)
     fixed = [each for each in root if each.tag not in DEPARTING]

@@ -139,8 +139,7 @@ class Forecast:
 
         Args:
             departure_s: simulation time of its beginning.
-            settles_s: over how long the road takes on the grip of other weather.
-        """
+            settles_s: over how long the road takes on the grip of other weather."""
         self._timeline = timeline
         self._departure_s = departure_s
         self._settles_s = settles_s
@@ -190,8 +189,7 @@ class _Type:
 class Surface:
     """Applies a condition to the road: the friction of the lanes, and the driving of all vehicles except the ego.
 
-    Lanes in tunnels stay dry. Desired speeds are set per vehicle, the rest per type.
-    """
+    Lanes in tunnels stay dry. Desired speeds are set per vehicle, the rest per type."""
 
     def __init__(
         self, sumo: LibSumo, network: Network, left_out: tuple[str, ...], drawn: Container[str] = ()
@@ -201,8 +199,7 @@ class Surface:
         Args:
             left_out: types, or prefixes of their names, that stay unchanged.
             drawn: distributions, which SUMO lists among the types, and which stay unchanged too, as does everybody
-                in weather that is not felt.
-        """
+                in weather that is not felt."""
         self._sumo = sumo
         self._left_out = left_out
         self._drawn = drawn

@@ -39,9 +39,7 @@ class Round:
 def planned(network: Network, first: Trip, onward: Sequence[Trip]) -> Round:
     """The round of some trips on a network.
 
-    Raises:
-        ScenarioError: one of them has no route, or no route leads from it to the others.
-    """
+    Raises ScenarioError: one of them has no route, or no route leads from it to the others."""
     ways = [_way(network, trip) for trip in (first, *onward)]
     core = _core(_graph(JunctionLengths(network.crossings)), ways[0], [])
     parts = [_within(way, core) for way in ways]
@@ -72,8 +70,7 @@ def loop_with(junctions: Iterable[tuple[str, str]], edge: str) -> frozenset[str]
     """The edges that can be reached from one and from which it can be reached again.
 
     Args:
-        junctions: the edges before and after each way through a junction.
-    """
+        junctions: the edges before and after each way through a junction."""
     ahead, back = _graph(junctions)
     return frozenset(_reached(ahead, edge) & _reached(back, edge))
 
@@ -104,8 +101,7 @@ def _core(graph: _Graph, way: Iterable[str], parts: list[frozenset[str]]) -> fro
     """The largest set of edges that can all be reached from one another and has part in a way.
 
     Args:
-        parts: such sets that have been found, and are not searched again.
-    """
+        parts: such sets that have been found, and are not searched again."""
     best: frozenset[str] = frozenset()
     for edge in way:
         part = next((part for part in parts if edge in part), None)

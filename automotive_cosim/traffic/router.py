@@ -59,8 +59,7 @@ class Router:
 
         Args:
             congestion: the speeds of the traffic.
-            type_id: vehicle type without speed deviation or rerouting device.
-        """
+            type_id: vehicle type without speed deviation or rerouting device."""
         self._sumo = sumo
         self._network = network
         self._congestion = congestion
@@ -115,8 +114,7 @@ class Router:
             fixed: how many of them can no longer be changed.
             driven_m: distance driven on the first edge.
             age_s: age of the news, at most ``contracts.OLDEST_NEWS_S``.
-            via: edges that every other route passes too, in their order.
-        """
+            via: edges that every other route passes too, in their order."""
         traffic = self._traffic(age_s)
         network, weights = self._network, dict(traffic.edges_s)
         found = tuple(route)

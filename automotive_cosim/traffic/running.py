@@ -37,8 +37,7 @@ class Running:
 
         Args:
             world: the traffic, warmed up.
-            beat: gives a sign of life, called after every step.
-        """
+            beat: gives a sign of life, called after every step."""
         self.world = world
         self.sumo: LibSumo = load_library()
         """SUMO's own library."""
@@ -55,11 +54,7 @@ class Running:
         return self.convoy.first
 
     def watcher(self, kind: type[W]) -> W:
-        """The watcher of that kind.
-
-        Raises:
-            LookupError: nobody has begun to watch so.
-        """
+        """The watcher of that kind. Raises LookupError: nobody has begun to watch so."""
         for each in self.watchers:
             if isinstance(each, kind):
                 return each

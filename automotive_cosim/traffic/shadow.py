@@ -51,8 +51,7 @@ class SharedTraffic:
         """Takes over a drive.
 
         Args:
-            traffic: the drive, to be used only through this object.
-        """
+            traffic: the drive, to be used only through this object."""
         self._traffic = traffic
         self.step_s = step_s
         self._shadows: list[ref[Shadow]] = []
@@ -162,9 +161,7 @@ class Shadow:
     def request(self, request: RoadRequest) -> Answer:
         """See ``Traffic.request``. What the driver was aware of is in the steps that the other has driven.
 
-        Raises:
-            RuntimeError: the other is ahead already; make the request before it advances.
-        """
+        Raises RuntimeError: the other is ahead already; make the request before it advances."""
         if self._ahead and isinstance(request, Aware):
             return Answer(True, "")
         return self._now().request(request)
@@ -172,9 +169,7 @@ class Shadow:
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
         """See ``Traffic.alternatives``.
 
-        Raises:
-            RuntimeError: the other is ahead already, and made no query at this instant.
-        """
+        Raises RuntimeError: the other is ahead already, and made no query at this instant."""
         known = self._heard.get((self._state.time_s, age_s))
         if known is not None:
             return known
@@ -183,22 +178,14 @@ class Shadow:
         return self._now().alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``.
-
-        Raises:
-            RuntimeError: the other is ahead already.
-        """
+        """See ``Traffic.look``. Raises RuntimeError: the other is ahead already."""
         return self._now().look()
 
     def shapes(self) -> RoadShapes:
         return self._shared.shapes()
 
     def branch(self) -> Traffic:
-        """See ``Traffic.branch``.
-
-        Raises:
-            RuntimeError: the other is ahead already.
-        """
+        """See ``Traffic.branch``. Raises RuntimeError: the other is ahead already."""
         return self._now().branch()
 
     def close(self) -> None:

@@ -78,9 +78,7 @@ class Signs:
     def refuse_if_fixed(self, edge_id: str) -> None:
         """Refuses to put up a sign where it would be for nothing: SUMO's limits for a class overrule it.
 
-        Raises:
-            ScenarioError: the road's type has a limit for cars.
-        """
+        Raises ScenarioError: the road's type has a limit for cars."""
         if self._edges[edge_id].cars_mps is not None:
             raise ScenarioError(
                 f"edge {edge_id!r} has a limit for cars in its type, which SUMO keeps whatever a sign says; "

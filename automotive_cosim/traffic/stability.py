@@ -161,8 +161,7 @@ def measure(
     Raises:
         ScenarioError: SUMO refuses the scenario; the message is SUMO's.
         TrafficError: SUMO hung, was killed, or was stopped before its time.
-        SetupError: eclipse-sumo is not installed.
-    """
+        SetupError: eclipse-sumo is not installed."""
     sumo = replace(
         scenario.sumo, step_length_s=step_length_s, scale=scenario.sumo.scale if scale is None else scale
     )
@@ -235,8 +234,7 @@ def summary(
     Raises:
         ScenarioError: SUMO refuses the scenario; the message is SUMO's.
         TrafficError: SUMO hung or was killed.
-        SetupError: eclipse-sumo is not installed.
-    """
+        SetupError: eclipse-sumo is not installed."""
     with (
         tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as complaints,
         subprocess.Popen(
@@ -288,11 +286,7 @@ class _Watchdog:
         self._signs += 1
 
     def judge(self, config: str) -> None:
-        """Why the process ended, if it was not its own doing.
-
-        Raises:
-            TrafficError: it was killed.
-        """
+        """Why the process ended, if it was not its own doing. Raises TrafficError: it was killed."""
         if self._has_bitten:
             raise TrafficError(f"SUMO hung in {config} and was stopped; try again, or use a smaller network")
         if self._process.returncode < 0:

@@ -15,12 +15,7 @@ from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.incident_tools import CAR_TYPE, IncidentTools
 from automotive_cosim.traffic.lookout import CROSSING
-from automotive_cosim.traffic.manoeuvres import (
-    StagedBraking,
-    StagedCutIn,
-    StagedCutOut,
-    StagedEmergency,
-)
+from automotive_cosim.traffic.manoeuvres import StagedBraking, StagedCutIn, StagedCutOut, StagedEmergency
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted_limits import Hours, TimedLimit, timed_limits
 from automotive_cosim.traffic.scripted import StagedVehicle
@@ -483,11 +478,7 @@ STAGED: Mapping[type[incidents.Incident], Callable[[IncidentTools, Any], StagedI
 
 
 def staged(tools: IncidentTools, incident: incidents.Incident) -> StagedIncident:
-    """What stages an incident.
-
-    Raises:
-        ScenarioError: it does not fit the network.
-    """
+    """What stages an incident. Raises ScenarioError: it does not fit the network."""
     return STAGED[type(incident)](tools, incident)
 
 

@@ -136,8 +136,7 @@ class SumoPedals:
     def apply(self) -> None:
         """Sets the upper bound for the next step: the driver's, reduced before a bend.
 
-        SUMO applies the speed factor in bends too, but drivers who speed on straights do not corner as fast.
-        """
+        SUMO applies the speed factor in bends too, but drivers who speed on straights do not corner as fast."""
         if not self.are_taken:
             return
         is_near = self._sensor.knows_emergency
@@ -197,8 +196,7 @@ class SumoPedals:
     def leave_corridor(self, leave: bool) -> str:
         """See ``pedals.Pedals``; without sublanes, SUMO knows no positions in a lane: the car stays where it is.
 
-        The corridor opens between the lane farthest from the kerb and the next (StVO section 11 (2)).
-        """
+        The corridor opens between the lane farthest from the kerb and the next (StVO section 11 (2))."""
         lane = self._sumo.lane_of(self._ego)
         edge = self._network.edges.get(self._sumo.edge_of(self._ego))
         is_innermost = edge is not None and len(edge.lane_ids) > 1 and lane == edge.lane_ids[-1]

@@ -191,8 +191,7 @@ class LibSumo:
         """Gives a vehicle the quickest way by averaged times. ``rerouteTraveltime`` alone goes by the limits.
 
         Raises:
-            one of ``refusals``: there is no way.
-        """
+            one of ``refusals``: there is no way."""
         self.vehicle.setRoutingMode(vehicle, AVERAGED)
         try:
             self.vehicle.rerouteTraveltime(vehicle, False)
@@ -203,8 +202,7 @@ class LibSumo:
         """Gives a vehicle a route that its own rerouting device, if it has one, does not change again.
 
         Raises:
-            one of ``refusals``: it cannot drive it.
-        """
+            one of ``refusals``: it cannot drive it."""
         self.set_route(vehicle, route)
         if self.has_device(vehicle, REROUTING):
             self.set_parameter(vehicle, "device.rerouting.period", "0")
@@ -234,8 +232,7 @@ class LibSumo:
         position, angle, speed, signals.
 
         Raises:
-            one of ``refusals``: it is not on the road.
-        """
+            one of ``refusals``: it is not on the road."""
         self.vehicle.subscribeContext(vehicle, self._around, radius_m, self._looks)
         found = self.vehicle.getContextSubscriptionResults(vehicle)
         self.vehicle.unsubscribeContext(vehicle, self._around, radius_m)
@@ -270,9 +267,7 @@ def _compiled_file(library: Any) -> str:
 def load_library() -> LibSumo:
     """Imports libsumo with its own data, whatever the environment says, and leaves the environment as it was.
 
-    Raises:
-        SetupError: it is not installed, lacks a system library or a function, or has another version.
-    """
+    Raises SetupError: it is not installed, lacks a system library or a function, or has another version."""
     kept = {name: os.environ.pop(name, None) for name in SUMO_VARIABLES}
     try:
         # It prints a warning if pyarrow is not of the version that its own Parquet output was built with, which
@@ -300,9 +295,7 @@ _OWN_DATA: dict[str, str] = {}
 def start(sumo: LibSumo, command: list[str]) -> None:
     """Starts a simulation in the current folder; SUMO's output goes into the error.
 
-    Raises:
-        ScenarioError: SUMO refuses the files; the message is SUMO's.
-    """
+    Raises ScenarioError: SUMO refuses the files; the message is SUMO's."""
     kept = {name: os.environ.get(name) for name in SUMO_VARIABLES}
     _set_environment({name: _OWN_DATA.get(name) for name in SUMO_VARIABLES})
     printed: list[str] = []

@@ -21,9 +21,7 @@ INSTALL = install_hint("maps")
 def home() -> Path:
     """The folder with SUMO's ``bin``, ``data`` and ``tools``.
 
-    Raises:
-        SetupError: eclipse-sumo is not installed, or in another version than libsumo.
-    """
+    Raises SetupError: eclipse-sumo is not installed, or in another version than libsumo."""
     try:
         installed: Distribution = distribution("eclipse-sumo")
     except PackageNotFoundError as error:
@@ -38,9 +36,7 @@ def home() -> Path:
 def program(name: str) -> Path:
     """The path of ``netconvert``, ``duarouter``, ``sumo``, …
 
-    Raises:
-        SetupError: it is not installed.
-    """
+    Raises SetupError: it is not installed."""
     path = home() / "bin" / name
     if not path.is_file():
         raise SetupError(f"eclipse-sumo is installed without {name}; install it again: {INSTALL}")
@@ -68,8 +64,7 @@ def run(
         heard: called with each line as it is printed; with ``--verbose``, these are the program's own stages.
 
     Returns:
-        Whether it succeeded, and everything it printed.
-    """
+        Whether it succeeded, and everything it printed."""
     command = [str(program(name)), *map(str, arguments)]
     lines: list[str] = []
     with subprocess.Popen(

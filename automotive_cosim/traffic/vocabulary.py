@@ -77,9 +77,7 @@ LOGGING_LIGHT = "SWARMLOG"
 def parameter(key: str) -> bool | None:
     """Whether a parameter is taken; None if it is left out, since SUMO would write.
 
-    Raises:
-        KeyError: it is a device's, and unknown.
-    """
+    Raises KeyError: it is a device's, and unknown."""
     if key == LOGGING_LIGHT:
         return None
     if not key.startswith(("device.", "person-device.", "has.")):

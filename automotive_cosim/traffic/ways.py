@@ -38,8 +38,7 @@ def ways_from(network: Network, start: str, most: int | None = None, goal: str =
     Args:
         start: where the routes begin.
         most: how many of the nearest edges to reach; None for all.
-        goal: an edge at which to stop: the route to it is the same as that of a search of all.
-    """
+        goal: an edge at which to stop: the route to it is the same as that of a search of all."""
     before: dict[str, str] = {}
     best_s: dict[str, float] = {start: 0.0}
     length_m: dict[str, float] = {start: network.edges[start].length_m}

@@ -70,8 +70,7 @@ class Lens:
 
         Args:
             seen: metres, at least ``NEAR_M`` ahead.
-            fine: how many times as large the picture is.
-        """
+            fine: how many times as large the picture is."""
         right, ahead, up = seen
         scale = self.focal * WIDTH * fine / ahead
         across = WIDTH * fine / 2 + right * scale

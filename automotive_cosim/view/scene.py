@@ -135,8 +135,7 @@ class Sights:
         """Indexes it: 20 ms for three thousand lanes.
 
         Args:
-            signed: what a sign shows in a network that was moved to another country; None as it is.
-        """
+            signed: what a sign shows in a network that was moved to another country; None as it is."""
         self.of = shapes, network, signed
         self._map = StreetMap(shapes, network)
         self._signed = signed
@@ -150,8 +149,7 @@ class Sights:
             snapshot: the vehicles and signals of this instant.
             driving: the own car on its road.
             car: the own car's lamps and glass.
-            length_m: length of a car that is not on the road any more.
-        """
+            length_m: length of a car that is not on the road any more."""
         own = next((each for each in snapshot.vehicles if each.vehicle_id == EGO), None)
         lens = _lens(driving, car, own.length_m if own else length_m)
         x_m, y_m = lens.x_m, lens.y_m

@@ -24,8 +24,7 @@ def board(kind: Board, figure: str, side: int, country: str) -> Image.Image:
 
     Args:
         side: pixels.
-        country: ISO 3166-1; empty for the Vienna Convention's form.
-    """
+        country: ISO 3166-1; empty for the Vienna Convention's form."""
     diamond = kind in (Board.SCHOOL, Board.ROADWORKS) and country in _DIAMONDS
     if kind in _KINDS and not diamond:
         return sign_picture(_KINDS[kind], figure, side, country)

@@ -68,8 +68,7 @@ def sources(moment: Moment, voices: int = 0) -> Iterator[tuple[str, float]]:
     """What is heard in the cabin, and each level in dB(A).
 
     Args:
-        voices: how many people speak besides the driver.
-    """
+        voices: how many people speak besides the driver."""
     siren = moment.driving.around.emergency_behind
     kmh, rain_mm_h = moment.driving.speed_mps * KMH_PER_MPS, moment.weather.precipitation
     found = dict(levels(moment.signals, kmh, rain_mm_h, None if siren is None else siren.gap_m))
@@ -111,8 +110,7 @@ def voices(said: Iterable[tuple[float, Iterable[str]]], now_s: float) -> int:
     """How many people besides the driver speak now.
 
     Args:
-        said: seconds, and what was said from then on.
-    """
+        said: seconds, and what was said from then on."""
     texts = ((at_s, text, came_from(text)) for at_s, every in said for text in every)
     others = ((at_s, spoken_s(text[len(seat) :])) for at_s, text, seat in texts if seat.endswith("seat: "))
     return sum(at_s <= now_s < at_s + lasts_s for at_s, lasts_s in others)

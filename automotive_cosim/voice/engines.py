@@ -91,8 +91,7 @@ def said(texts: Sequence[str]) -> list[Sound]:
 
     Raises:
         SetupError: the extra is missing.
-        UserError: the voice could not say them.
-    """
+        UserError: the voice could not say them."""
     _module("piper")
     sounds: list[Sound] = []
     with _PIPERS:
@@ -122,8 +121,7 @@ def in_cabin(sound: Sound, snr_db: float | None, key: str) -> Sound:
     """Words in the cabin's noise, drawn for that key; without noise if the ratio is None.
 
     Args:
-        snr_db: A-weighted level of the words above that of the noise.
-    """
+        snr_db: A-weighted level of the words above that of the noise."""
     apart: npt.NDArray[np.floating[Any]] = np.pad(sound, round(MARGIN_S * RATE_HZ))
     if snr_db is not None:
         seed = int.from_bytes(blake2b(key.encode(), digest_size=8).digest())
@@ -139,8 +137,7 @@ def recognised(sound: Sound) -> str:
 
     Raises:
         SetupError: the extra is missing.
-        UserError: the recogniser is damaged.
-    """
+        UserError: the recogniser is damaged."""
     whisper, tokens = _recogniser()
     seconds = len(sound) / RATE_HZ
     seen = whisper.feature_extractor(sound)

@@ -43,8 +43,7 @@ def sounding(text: str, snr_db: float) -> bytes:
 
     Raises:
         SetupError: the extra is missing.
-        InfrastructureError: the voice could not say it.
-    """
+        InfrastructureError: the voice could not say it."""
     every = list(pieces(text))
     try:
         sounds = engines.said(every)

@@ -85,8 +85,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, State]):
     ) -> CarObservation:
         """Drives to a task's hand-over, or departs on a drive; the episode before it is given up.
 
-        ``conditions`` are ``geo``, ``see`` and so on, as in ``automotive-cosim run``.
-        """
+        ``conditions`` are ``geo``, ``see`` and so on, as in ``automotive-cosim run``."""
         self.close()
         under = conditions_of(conditions)
         spec = trial(None if drive else task, drive, half, seed, own_scenario(scenario, None), minutes, under)

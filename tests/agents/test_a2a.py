@@ -1,7 +1,5 @@
 """Agents behind an address: the contract, both protocols, metrics, and agents that mean harm."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re

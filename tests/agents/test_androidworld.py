@@ -113,10 +113,7 @@ def does(seen: Observation) -> Iterator[Callable[..., list[Action | str]]]:
         ([tap(timeout_sec=0), tap()], [Action(ActionType.DOUBLE_TAP, x=10, y=20)]),
         ([tap(timeout_sec=0)], [TAP]),
         ([shell("input", "tap", "10", "20")], [TAP]),
-        (
-            [shell("input", "swipe", "10", "20", "10", "20", "1000")],
-            [Action(ActionType.LONG_PRESS, x=10, y=20)],
-        ),
+        ([shell("input", "swipe", "10", "20", "10", "20", "1000")], [Action(ActionType.LONG_PRESS, x=10, y=20)]),
         (
             [shell("input", "swipe", "640", "600", "640", "100", "")],
             [Action(ActionType.SWIPE, x=640, y=600, direction=Direction.UP, distance_px=500)],

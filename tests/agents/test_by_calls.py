@@ -1,7 +1,5 @@
 """The oracle by calls: the reference solution without a screen, with the verdict that touch has."""
 
-from __future__ import annotations
-
 import pytest
 
 from automotive_cosim.agents import AgentSettings, make_agent

@@ -1,7 +1,5 @@
 """The agent that calls functions: what is offered, what is told, several calls in an answer, and bad answers."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Sequence

@@ -135,8 +135,7 @@ def _won(simulations, agent: str, geo: GeoInput = GeoInput.FULL) -> Iterator[boo
 def test_with_a_wrong_place_a_pairs_success_falls_to_that_without_place(simulations):
     """80 in a 50: the pipeline carries the information, and nothing else does.
 
-    That asurada wins both halves and t3a the second alone is shown in ``tests/tasks/test_on_the_road.py``.
-    """
+    That asurada wins both halves and t3a the second alone is shown in ``tests/tasks/test_on_the_road.py``."""
     assert list(_won(simulations, "asurada", GeoInput.CONTEXT)) == [True, True]
     for control in (GeoInput.WRONG, GeoInput.NONE):
         assert not all(_won(simulations, "asurada", control))

@@ -1,7 +1,5 @@
 """Every measurement in ``benchmarks/`` starts; what it measures is run by hand."""
 
-from __future__ import annotations
-
 import runpy
 import sys
 from pathlib import Path

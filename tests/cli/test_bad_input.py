@@ -98,12 +98,7 @@ def test_a_folder_that_cannot_be_made_is_told_before_anything_runs(cli):
 
 
 @pytest.mark.parametrize(
-    ("content", "words"),
-    [
-        ("", ["lacks"]),
-        ("name = ", ["not TOML"]),
-        (b"\xff\xfe", ["not UTF-8 text"]),
-    ],
+    ("content", "words"), [("", ["lacks"]), ("name = ", ["not TOML"]), (b"\xff\xfe", ["not UTF-8 text"])]
 )
 def test_a_broken_scenario_is_named(cli, tmp_path, content, words):
     folder = tmp_path / "mine"

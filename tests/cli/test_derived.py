@@ -1,7 +1,5 @@
 """Options that follow from the fields of a dataclass."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, make_dataclass
 from enum import StrEnum
@@ -26,12 +24,7 @@ from automotive_cosim.formats.docs import inherited_field_docs
 from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.proof.settings import ProofSettings
 from automotive_cosim.report.settings import CompareSettings
-from automotive_cosim.run.settings import (
-    Budget,
-    EvaluationSettings,
-    RunSettings,
-    SingleSettings,
-)
+from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings, SingleSettings
 from automotive_cosim.safety.settings import SearchOrder, SearchSettings
 from automotive_cosim.serve.settings import ServeSettings
 from tests.laws import over

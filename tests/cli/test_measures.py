@@ -1,7 +1,5 @@
 """``automotive-cosim measures`` on a recorded road."""
 
-from __future__ import annotations
-
 import gzip
 import json
 from collections.abc import Callable

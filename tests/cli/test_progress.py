@@ -1,7 +1,5 @@
 """Progress as lines: nothing is said twice, and an estimate never counts upwards."""
 
-from __future__ import annotations
-
 from io import StringIO
 
 from automotive_cosim.cli.batches import ProgressView

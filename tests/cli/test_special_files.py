@@ -1,7 +1,5 @@
 """No command that reads a file or a folder waits for a pipe or opens a device or a socket."""
 
-from __future__ import annotations
-
 import os
 import signal
 import socket

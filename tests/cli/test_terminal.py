@@ -1,7 +1,5 @@
 """No control character of others reaches a terminal."""
 
-from __future__ import annotations
-
 import ast
 import io
 import json

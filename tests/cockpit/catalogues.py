@@ -4,8 +4,6 @@ python -m tests.cockpit.catalogues            # what is missing, unused or untra
 python -m tests.cockpit.catalogues --renew    # adds what is missing, untranslated, and drops what is unused
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator, Sequence
 from io import SEEK_END, BytesIO

@@ -1,7 +1,5 @@
 """A small town and what is outside in it, made by hand."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -120,8 +118,7 @@ class View:
 def walk(home: Cockpit) -> tuple[View, ...]:
     """Every view that taps on widgets lead to from home: screens, and the parts that they can show.
 
-    Of the lines of a list that lead to the same screen, the first is taken.
-    """
+    Of the lines of a list that lead to the same screen, the first is taken."""
     home.open_app("home")
     found = {"home": View("home", (), home)}
     ahead = deque(found.values())

@@ -19,8 +19,7 @@ def press(cockpit: Cockpit, *steps: str) -> FeedbackCode:
     """One step after another, ``open APP``, ``back`` or the key of what is touched, parted by ``; `` or alone.
 
     Returns:
-        What the last one did.
-    """
+        What the last one did."""
     code = FeedbackCode.OK
     for step in "; ".join(steps).split("; "):
         if step == "back":

@@ -5,8 +5,6 @@ on the right, in the three states of motion; and on the other sizes of screen in
     python -m tests.cockpit.goldens --renew    # stores the present ones
 """
 
-from __future__ import annotations
-
 import json
 import lzma
 import sys

@@ -1,7 +1,5 @@
 """The cockpit under fingers that do anything, with any text."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

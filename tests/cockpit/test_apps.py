@@ -1,7 +1,5 @@
 """Places and routes, music, phone and the smaller apps: what they hold and what their buttons do."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
@@ -435,9 +433,7 @@ def test_a_memo_is_as_long_as_it_was_spoken(cockpit: Cockpit, around: Surroundin
 def test_the_trip_computer_counts_from_its_reset(cockpit: Cockpit, around: Surroundings) -> None:
     def drive(seconds: float, metres: float) -> None:
         now = replace(
-            around.driving,
-            time_s=around.driving.time_s + seconds,
-            distance_m=around.driving.distance_m + metres,
+            around.driving, time_s=around.driving.time_s + seconds, distance_m=around.driving.distance_m + metres
         )
         cockpit.sense(replace(around, driving=now), 60.0)
 

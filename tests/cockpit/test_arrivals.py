@@ -1,7 +1,5 @@
 """Calls and messages that come in while driving."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -54,10 +52,7 @@ def test_a_call_rings_on_every_screen_and_nothing_else_moves(ringing: Cockpit) -
 def test_a_call_is_answered_and_ended(ringing: Cockpit) -> None:
     before = ringing.commands()
     assert press(ringing, "call.answer") is FeedbackCode.OK
-    assert difference(before, ringing.commands()) == {
-        "calls.answered": ([], [WHO]),
-        "phone.on_call": ("", WHO),
-    }
+    assert difference(before, ringing.commands()) == {"calls.answered": ([], [WHO]), "phone.on_call": ("", WHO)}
     assert (ringing.signals[CALL.RINGING], ringing.signals[CALL.PARTNER]) == ("", WHO)
     assert "call.answer" not in keys(ringing)
     press(ringing, "open phone; call.end")

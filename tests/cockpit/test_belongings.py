@@ -1,7 +1,5 @@
 """What a driver brings into the car, what comes in between, and the screens that work with it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The cabin's physics against values worked by hand or printed in tables."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Changes of the car that nobody commands."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise

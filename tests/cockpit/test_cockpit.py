@@ -1,7 +1,5 @@
 """The cockpit as its users drive it: fingers, safety calls, the road's answers, copies, and a lot of nonsense."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

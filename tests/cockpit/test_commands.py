@@ -1,7 +1,5 @@
 """What was commanded is done once more elsewhere, in full or as far as it aims at some commands."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from inspect import isabstract

@@ -1,7 +1,5 @@
 """However long the way to the hand-over took, no screen tells it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta

@@ -1,7 +1,5 @@
 """A finger that is dragged: sliders, lists and the map follow it as far as it goes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any

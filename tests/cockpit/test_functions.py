@@ -1,7 +1,5 @@
 """Functions of the car: one for whatever a finger can command, restricted as the finger is."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Iterator

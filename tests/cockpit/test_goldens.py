@@ -1,7 +1,5 @@
 """Every view lists what it listed; ``goldens`` renews the lists and shows what has changed."""
 
-from __future__ import annotations
-
 import pytest
 
 from .goldens import differences, made, stored

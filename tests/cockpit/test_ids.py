@@ -1,7 +1,5 @@
 """Resource ids say nothing, and tell everything apart."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The on-screen keyboard."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product

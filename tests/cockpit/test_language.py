@@ -1,7 +1,5 @@
 """The screens in other languages."""
 
-from __future__ import annotations
-
 import ast
 import copy
 import json

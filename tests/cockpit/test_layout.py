@@ -1,7 +1,5 @@
 """Containers divide a box without remainder, gap or overlap."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import pytest

@@ -1,7 +1,5 @@
 """A car where one drives on the left: the driver sits on the right."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

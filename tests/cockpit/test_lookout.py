@@ -1,7 +1,5 @@
 """What the car notices by itself is shown on home and map, in picture and tree; without a lookout, nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Makes: their files, what a finger taps on the way to a screen, and what is refused in a file of one's own."""
 
-from __future__ import annotations
-
 from importlib.resources import files
 from pathlib import Path
 

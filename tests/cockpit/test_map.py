@@ -1,7 +1,5 @@
 """The moving map: what is drawn where."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The map as it is used: moved, turned, with marks; and frames drawn only where they changed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Who is aboard, as the car tells it on every channel, and the cabin that they are left in."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Photos: they show what they are of, and no list of elements tells it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -27,11 +25,7 @@ KINDS = {
     Shows.WARMTH: (Photo(Shows.WARMTH, 19.0, "C"), Photo(Shows.WARMTH, 19.5, "C"), Photo(Shows.WARMTH, 66, "F")),
     Shows.PRESSURE: (Photo(Shows.PRESSURE, 2.3, "bar"), Photo(Shows.PRESSURE, 34, "psi")),
     Shows.LIMIT: (Photo(Shows.LIMIT, 30), Photo(Shows.LIMIT, 30, "mph"), Photo(Shows.LIMIT, 50)),
-    Shows.BENCH: (
-        Photo(Shows.BENCH, "left"),
-        Photo(Shows.BENCH, "right"),
-        Photo(Shows.BENCH, "left", struck=True),
-    ),
+    Shows.BENCH: (Photo(Shows.BENCH, "left"), Photo(Shows.BENCH, "right"), Photo(Shows.BENCH, "left", struck=True)),
     Shows.LAMPS: (Photo(Shows.LAMPS, "Garage"), Photo(Shows.LAMPS, "Garage", struck=True)),
 }
 

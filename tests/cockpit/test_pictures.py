@@ -1,7 +1,5 @@
 """Covers and cameras: drawn from what is there, the same every time, and named alone in the list."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The screens say what is so, and what they advise can be done."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime

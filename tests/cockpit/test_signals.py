@@ -1,7 +1,5 @@
 """The signal catalogue and the store."""
 
-from __future__ import annotations
-
 import csv
 import json
 import sys

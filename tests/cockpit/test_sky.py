@@ -1,7 +1,5 @@
 """What the car feels outside, against figures worked out by hand or looked up."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime

@@ -1,7 +1,5 @@
 """Tell-tales and the last sign: each state has its picture, and the list says the same in words."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product

@@ -1,7 +1,5 @@
 """The timer counts simulated seconds and says once that they are over."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pytest

@@ -1,7 +1,5 @@
 """Couplings between switches, lamps that follow the light, and the battery."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

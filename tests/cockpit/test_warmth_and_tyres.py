@@ -1,7 +1,5 @@
 """Tyres, seats and the display in daylight against values worked by hand."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

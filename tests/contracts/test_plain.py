@@ -1,7 +1,5 @@
 """Numbers in texts, as people write them."""
 
-from __future__ import annotations
-
 import pytest
 
 from automotive_cosim.contracts.plain import rounded

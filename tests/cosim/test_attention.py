@@ -1,7 +1,5 @@
 """The driver's attention: what takes it, for how long, and what SUMO makes of it."""
 
-from __future__ import annotations
-
 import shutil
 from contextlib import closing
 from itertools import groupby

@@ -1,7 +1,5 @@
 """The car's link drops and comes back as the scenario's file says, beside what tunnels do to it."""
 
-from __future__ import annotations
-
 import shutil
 from contextlib import closing
 from pathlib import Path

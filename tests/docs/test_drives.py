@@ -1,7 +1,5 @@
 """docs/reference/drives.md describes every staging and what a driver does after an alert, as they are."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from automotive_cosim.contracts import AlertKind

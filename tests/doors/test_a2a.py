@@ -1,7 +1,5 @@
 """The benchmark as an evaluating agent: requests, progress, the result, and what is told before the end."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import re

@@ -1,7 +1,5 @@
 """Over HTTP, the server answers whoever has its token, under its own names, and no other site's pages."""
 
-from __future__ import annotations
-
 import http.client
 import socket
 import threading

@@ -7,8 +7,6 @@ python -m tests.drives.record --renew border_july grid_june
 python -m tests.drives.record --staged   # how many of the staged situations came off
 """
 
-from __future__ import annotations
-
 import json
 import lzma
 import sys

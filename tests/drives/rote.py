@@ -1,7 +1,5 @@
 """The agent that gives one alert by rote."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 

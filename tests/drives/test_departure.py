@@ -1,7 +1,5 @@
 """Drives in SUMO: they depart as planned, never arrive, and can be copied."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Drives of a family on other roads."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

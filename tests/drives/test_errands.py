@@ -1,7 +1,5 @@
 """What people aboard ask for on a drive: the script, the words, and the judge of the state that is reached."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Laws over all drive families, without SUMO."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The list of what went wrong: as long as the losses of the score, and in order."""
 
-from __future__ import annotations
-
 import pytest
 
 from automotive_cosim.drives.events import KINDS

@@ -1,7 +1,5 @@
 """The harm of a drive, on moments made by hand."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

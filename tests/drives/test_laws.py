@@ -4,8 +4,6 @@ On the record nobody acts, so what an agent would have changed on the road is le
 ``benchmarks/drives.py --watch`` lets each of these watchers drive.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace

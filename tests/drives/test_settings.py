@@ -1,7 +1,5 @@
 """What of a drive can be set, and plans with single trials."""
 
-from __future__ import annotations
-
 import pytest
 
 from automotive_cosim.drives.departure import scenario_of

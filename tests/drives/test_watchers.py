@@ -1,7 +1,5 @@
 """What the rule-perfect watcher makes of what it reads."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from runpy import run_path

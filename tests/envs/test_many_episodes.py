@@ -1,7 +1,5 @@
 """Two hundred episodes in a row leave nothing behind: no memory, no process, no open file."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

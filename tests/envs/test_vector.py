@@ -1,7 +1,5 @@
 """Many environments at the same time do what each does alone, and share their warm traffic."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from typing import Any

@@ -1,7 +1,5 @@
 """The navigation knows other ways to the goal, and the road agrees with the sky."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The condition ``interface``: what an agent may do, what it costs, and that the verdict is the same."""
 
-from __future__ import annotations
-
 import pytest
 
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus

@@ -1,7 +1,5 @@
 """Why a task did not start at another place is said: no sign, or a law that says otherwise."""
 
-from __future__ import annotations
-
 from typing import Any, cast
 
 import pytest

@@ -1,7 +1,5 @@
 """Whatever stands in a file that a user wrote: it is read, or every problem gets a line of file, line and field."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil
@@ -241,6 +239,8 @@ WRONG = [
     ("plan", '"none"', '"non"', "geo", "no geo control named 'non': did you mean 'none'", True),
     ("plan", "repeats = 2", "repeats = 0", "repeats", "a whole number from 1 to 1000", True),
     ("plan", "repeats = 2", 'repeats = "2"', "repeats", "repeats is '2'", True),
+    ("plan", "repeats = 2", "repeats = 1.5", "repeats", "whole number", True),
+    ("plan", "held_out = false", "everywhere = 1", "everywhere", "true or false", True),
     ("plan", "held_out = false", "held_out = 0", "held_out", "true or false", True),
     ("plan", "steps = 5", "steps = 5.5", "steps", "[limits]: steps is 5.5", True),
     ("plan", "steps = 5", "step = 5", "step", "did you mean 'steps'", True),

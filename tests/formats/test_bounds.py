@@ -1,7 +1,5 @@
 """Every reader of somebody else's file has a bound of cost, and refuses in one line what is just over it."""
 
-from __future__ import annotations
-
 import ast
 import gzip
 import re
@@ -269,12 +267,12 @@ def test_nothing_else_reads_without_a_bound() -> None:
     assert not KEPT_IN.keys() - found, "these read no more"
 
 
-class PanicError(BaseException):
+class _PanicError(BaseException):
     """As Rust's, which is no ``Exception``."""
 
 
 def panics() -> None:
-    raise PanicError("index out of bounds")
+    raise _PanicError("index out of bounds")
 
 
 def test_a_library_that_panics_is_a_refusal(tmp_path: Path) -> None:

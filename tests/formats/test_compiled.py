@@ -1,7 +1,5 @@
 """What is made of shipped files is made anew only when something has changed, and is the same as ever."""
 
-from __future__ import annotations
-
 import sys
 from functools import partial
 from pathlib import Path

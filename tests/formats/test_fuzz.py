@@ -1,8 +1,6 @@
 """Whatever a file of others holds, it is read, or refused in one line: cut, with flipped bits, with parts swapped,
 and grown from the grammars of its format. That costs neither much time nor much memory."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import re

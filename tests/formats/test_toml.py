@@ -1,7 +1,5 @@
 """Where things stand in a TOML file, held against what is in it."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator
 from importlib.resources import files

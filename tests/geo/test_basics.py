@@ -1,7 +1,5 @@
 """Every place on earth has its basics: side of the road, units, emergency numbers, and the rules met daily."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib.resources import files
 

@@ -1,7 +1,5 @@
 """A drive in SUMO across the Irish border: sign, unit and lamp rules change in the second the line is crossed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise

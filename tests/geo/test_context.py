@@ -1,7 +1,5 @@
 """The context: from the receiver's place and the road's facts to lines that state and never judge."""
 
-from __future__ import annotations
-
 import itertools
 import pickle
 import random

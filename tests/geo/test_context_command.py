@@ -1,24 +1,20 @@
 """``automotive-cosim show context``."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
 import pytest
-import typer
 from typer.testing import CliRunner
 
-from automotive_cosim.cli import context
+from automotive_cosim.cli.main import made
 from automotive_cosim.errors import UserError
 from automotive_cosim.geo.forecast import OpenMeteo
 
-APP = typer.Typer()
-APP.command(context_settings={"ignore_unknown_options": True})(context.context)
+APP = made("show", "context")
 
 
 def _run(*arguments: str) -> str:
-    result = CliRunner().invoke(APP, arguments, catch_exceptions=False)
+    result = CliRunner().invoke(APP, ["show", "context", *arguments], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return result.stdout
 
@@ -94,7 +90,7 @@ def test_bad_input_is_one_line(arguments: tuple[str, ...], message: str) -> None
     ],
 )
 def test_a_number_that_cannot_be_says_what_can(arguments: tuple[str, ...]) -> None:
-    result = CliRunner().invoke(APP, ["48.8", "2.3", *arguments])
+    result = CliRunner().invoke(APP, ["show", "context", "48.8", "2.3", *arguments])
     assert result.exit_code == 2
     assert f"{arguments[-1]!r} is not a " in result.stderr
     assert "number from" in result.stderr
@@ -119,7 +115,7 @@ def test_online_without_a_service_falls_back_and_says_so(monkeypatch: pytest.Mon
     monkeypatch.setenv("no_proxy", "*")
     monkeypatch.setattr(OpenMeteo.__init__, "__defaults__", ("http://127.0.0.1:9/", 1.0))
     place = ("48.82", "2.34", "--time", "2026-01-20T10:00")
-    result = CliRunner().invoke(APP, [*place, "--online"], catch_exceptions=False)
+    result = CliRunner().invoke(APP, ["show", "context", *place, "--online"], catch_exceptions=False)
     assert "Open-Meteo cannot be reached" in result.stderr
     assert "drawn from the climate of Paris (Montsouris) (seed 0) instead" in result.stderr
     assert "Weather: unknown" not in result.stdout

@@ -1,7 +1,5 @@
 """Dust in the air is weather of its own, not fog."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

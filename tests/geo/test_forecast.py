@@ -1,7 +1,5 @@
 """Weather from the climate and from Open-Meteo: a server on this machine stands in for it."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import threading

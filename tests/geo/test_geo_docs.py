@@ -1,7 +1,5 @@
 """docs/geo.md and its reference say what is so: their examples are run."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable
@@ -11,10 +9,9 @@ from pathlib import Path
 from zoneinfo import ZoneInfo
 
 import pytest
-import typer
 from typer.testing import CliRunner
 
-from automotive_cosim.cli import context
+from automotive_cosim.cli.main import made
 from automotive_cosim.contracts import DrivingState, GpsFix
 from automotive_cosim.errors import UserError
 from automotive_cosim.geo.basics import basics_of, rows
@@ -27,8 +24,7 @@ from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Status
 DOCS = Path(__file__).parents[2] / "docs"
 DOC = "".join((DOCS / page).read_text(encoding="utf-8") for page in ("geo.md", "reference/geo.md"))
 BLOCKS = re.findall(r"```(\w+)\n(.*?)```", DOC, re.DOTALL)
-APP = typer.Typer()
-APP.command(context_settings={"ignore_unknown_options": True})(context.context)
+APP = made("show", "context")
 
 
 def _block(kind: str, number: int = 0) -> str:
@@ -45,7 +41,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_the_example_shows_in_the_command(folder: Path) -> None:
     arguments = _block("console").removeprefix("$ automotive-cosim show context ").split()
-    result = CliRunner().invoke(APP, arguments, catch_exceptions=False)
+    result = CliRunner().invoke(APP, ["show", "context", *arguments], catch_exceptions=False)
     assert set(_block("text").splitlines()) <= set(result.stdout.splitlines())
 
 
@@ -62,7 +58,7 @@ def test_the_refusal_is_the_one_shown(folder: Path) -> None:
     path.write_text(_block("toml").replace('topic = "limit"', 'topic = "limt"'), encoding="utf-8")
     arguments = _block("console").removeprefix("$ automotive-cosim show context ").split()
     with pytest.raises(UserError) as error:
-        CliRunner().invoke(APP, arguments, catch_exceptions=False)
+        CliRunner().invoke(APP, ["show", "context", *arguments], catch_exceptions=False)
     assert f"error: {error.value}\n" == _block("text", 1)
 
 
@@ -89,7 +85,7 @@ def test_the_basics_of_each_status_are_counted() -> None:
 
 @pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim show context (.*)$", DOC, re.MULTILINE))
 def test_the_commands_run(line: str) -> None:
-    assert CliRunner().invoke(APP, line.split(), catch_exceptions=False).exit_code == 0
+    assert CliRunner().invoke(APP, ["show", "context", *line.split()], catch_exceptions=False).exit_code == 0
 
 
 def test_the_line_of_law_is_one(locate: Callable[..., GeoContext]) -> None:

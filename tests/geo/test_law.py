@@ -1,7 +1,5 @@
 """What the law's own text says, statement by statement: every rule marked verified gives the answer it should."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -163,9 +161,7 @@ def test_a_living_street_has_the_limit_of_its_own_sign(
 
 @over([code for code in Geo().atlas.codes() if len(code) == 2])
 def test_no_general_rule_is_certain_of_a_street_with_a_law_of_its_own(
-    code: str,
-    geo: Geo,
-    facts: Callable[..., RuleFacts],
+    code: str, geo: Geo, facts: Callable[..., RuleFacts]
 ) -> None:
     place = Place(country=code, layers=tuple(e for e in geo.atlas.country(code) if e.kind == "country"))
     for road_class in OWN_LAW:
@@ -176,9 +172,7 @@ def test_no_general_rule_is_certain_of_a_street_with_a_law_of_its_own(
 
 @over([code for code in Geo().atlas.codes() if "-" in code])
 def test_a_region_sets_no_limit_on_motorways_by_a_rule_about_country_roads(
-    code: str,
-    geo: Geo,
-    facts: Callable[..., RuleFacts],
+    code: str, geo: Geo, facts: Callable[..., RuleFacts]
 ) -> None:
     """Where the country has a limit of motorways, it stands unless the region or city names motorways."""
     layers = tuple(entry for entry in geo.atlas.country(code[:2]) if entry.code in (code, code[:2]))
@@ -307,11 +301,7 @@ def test_a_motorcycle_and_a_lorry_have_rules_that_a_car_does_not_read(locate: Ca
 
 
 @over([code for code in Geo().atlas.codes() if "-" in code])
-def test_a_city_or_region_overrides_with_a_date(
-    code: str,
-    geo: Geo,
-    rules: dict[str, Rule],
-) -> None:
+def test_a_city_or_region_overrides_with_a_date(code: str, geo: Geo, rules: dict[str, Rule]) -> None:
     (entry,) = [entry for entry in geo.atlas.country(code[:2]) if entry.code == code]
     assert entry.rules
     assert entry.area is not None

@@ -1,7 +1,5 @@
 """Places at the edges of the map, the sun at the poles, weather words and climate."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta

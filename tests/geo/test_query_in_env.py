@@ -1,7 +1,5 @@
 """Queries in an episode: each stands in the trace with its answer, and its time passes."""
 
-from __future__ import annotations
-
 import itertools
 import json
 from collections.abc import Iterator
@@ -47,12 +45,7 @@ def test_its_time_passes_on_top_of_the_actions(asked: CockpitEnv) -> None:
 
 
 def test_an_agent_without_the_context_cannot_ask(simulations: Simulations) -> None:
-    blind = CockpitEnv(
-        task="hvac_fan_max",
-        scenario="border",
-        channels=("elements",),
-        simulations=simulations,
-    )
+    blind = CockpitEnv(task="hvac_fan_max", scenario="border", channels=("elements",), simulations=simulations)
     blind.reset(seed=0)
     blind.step({"action_type": "query", "text": "weather"})
     assert blind.episode.observation.feedback.code is FeedbackCode.REFUSED

@@ -1,7 +1,5 @@
 """The GPS receiver and the modem."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from itertools import pairwise

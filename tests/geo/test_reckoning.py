@@ -1,7 +1,5 @@
 """Dead reckoning on a map, against where SUMO has the car."""
 
-from __future__ import annotations
-
 import math
 from contextlib import closing
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Whatever position, time, road, weather or rule file comes: an answer, or one line that says what is wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from zoneinfo import ZoneInfo

@@ -1,7 +1,5 @@
 """Rule files: all that is shipped is well formed; a wrong one is refused with file, entry and reason."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The virtual sensor: what may be asked, what it costs, and what no answer says."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import re
@@ -212,10 +210,7 @@ def test_what_comes_over_the_air_costs_more(instant: Callable[..., Instant]) -> 
 @pytest.mark.parametrize("place", [PARIS, BERLIN, DUBAI, SEA, (39.9, 116.4), (40.75, -73.98), (53.35, -6.26)])
 @pytest.mark.parametrize("speed_mps", [0.0, 60.0])
 def test_no_answer_judges_or_advises(
-    instant: Callable[..., Instant],
-    weather: Callable[..., Weather],
-    place: tuple[float, float],
-    speed_mps: float,
+    instant: Callable[..., Instant], weather: Callable[..., Weather], place: tuple[float, float], speed_mps: float
 ) -> None:
     """The car drives 216 km/h where 50 is posted, close behind another in dense fog: nobody is told."""
     judging = re.compile(

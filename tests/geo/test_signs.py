@@ -11,10 +11,7 @@ from tests.laws import over
 
 PER_MPS = {"km/h": KMH_PER_MPS, "mph": MPH_PER_MPS}
 UNITS = {"DE": "km/h", "US": "mph", "GB": "mph"}
-SIGNS = [
-    *((kmh, KMH_PER_MPS) for kmh in range(10, 140, 10)),
-    *((mph, MPH_PER_MPS) for mph in range(10, 90, 5)),
-]
+SIGNS = [*((kmh, KMH_PER_MPS) for kmh in range(10, 140, 10)), *((mph, MPH_PER_MPS) for mph in range(10, 90, 5))]
 
 
 def signs(country):

@@ -1,7 +1,5 @@
 """The checks of the law: what counts as broken, from when to when, by how much, and who can see it."""
 
-from __future__ import annotations
-
 import itertools
 import subprocess
 import sys
@@ -37,10 +35,7 @@ FRONT_FOG = "Vehicle.Body.Lights.Fog.Front.IsOn"
 HAZARD = "Vehicle.Body.Lights.Hazard.IsSignaling"
 HORN = "Vehicle.Body.Horn.IsActive"
 DARK = {LOW: False, HIGH: False}
-FILM = {
-    "Vehicle.Cabin.Infotainment.Media.Action": "PLAY",
-    "Vehicle.Cabin.Infotainment.Media.Played.Source": "DVD",
-}
+FILM = {"Vehicle.Cabin.Infotainment.Media.Action": "PLAY", "Vehicle.Cabin.Infotainment.Media.Played.Source": "DVD"}
 
 
 def posted(kmh: float) -> dict[str, object]:
@@ -170,10 +165,7 @@ def test_fog_lowers_even_signs_and_rain_the_law_only(
     assert rules() == set()
 
 
-@given(
-    speeds=st.lists(st.floats(0, 60), max_size=40),
-    limit=st.sampled_from([30, 50, 80, 130]),
-)
+@given(speeds=st.lists(st.floats(0, 60), max_size=40), limit=st.sampled_from([30, 50, 80, 130]))
 def test_intervals_lie_within_the_drive_apart_and_in_order(
     at: Callable[..., State], speeds: list[float], limit: int
 ) -> None:

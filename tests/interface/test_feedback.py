@@ -1,7 +1,5 @@
 """Quiet feedback names the control and whether it took; what became of the car is left to the screen."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

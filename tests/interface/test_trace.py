@@ -1,7 +1,5 @@
 """The trace's hash grows with the episode, and is that of the JSON that is kept of it."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import asdict, replace

@@ -1,7 +1,5 @@
 """Surrogate measures of safety by plans whose outcome is known, and beside SUMO's SSM device."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from xml.etree import ElementTree
 

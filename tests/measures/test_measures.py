@@ -1,7 +1,5 @@
 """Measures of analytic encounters, in closed form to one step, and the exposure of a drive."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from math import cos, hypot, radians, sin
 

@@ -1,8 +1,6 @@
 """Fixtures about a village that does not exist, on real-looking ground in the Beauce: main street, back lanes, a
 roundabout, a signalled crossroads, a tunnel, a motorway without a limit, and a footpath that cars cannot use."""
 
-from __future__ import annotations
-
 import bz2
 import gzip
 from collections.abc import Callable

@@ -4,8 +4,6 @@ it is followed, or its number in the import's list.
 ``AUTOMOTIVE_COSIM_TEST_DATA=FOLDER python -m tests.osm.lost`` writes the table of ``docs/reference/scenarios.md``.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import tempfile

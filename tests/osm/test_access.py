@@ -1,8 +1,6 @@
 """Who may drive which way: every combination of tags that the OSM wiki documents (pages "Key:access", "Key:oneway",
 "Conditional restrictions", "Key:barrier")."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import pytest
@@ -182,11 +180,7 @@ def test_doubtful_access_and_directions_are_told(tags: dict[str, str], told: lis
         ({"oneway:conditional": "yes @ (Mo-Fr 07:00-09:00)"}, "", BOTH),
         ({"oneway": "-1", "oneway:conditional": "no @ (22:00-06:00)"}, "no @ (24/7); yes @ (22:00-06:00)", BOTH),
         ({"oneway": "yes", "oneway:conditional": "no @ destination"}, "", WITH),
-        (
-            {"oneway": "yes", "lanes": "3", "oneway:conditional": "-1 @ (07:00-09:00)"},
-            "no @ (07:00-09:00)",
-            WITH,
-        ),
+        ({"oneway": "yes", "lanes": "3", "oneway:conditional": "-1 @ (07:00-09:00)"}, "no @ (07:00-09:00)", WITH),
         ({"oneway": "yes", "oneway:motorcar": "no", "oneway:conditional": "-1 @ (07:00-09:00)"}, "", BOTH),
         ({"access": "no", "access:conditional": "yes @ (sunrise-sunset)"}, "", NEITHER),
     ],

@@ -1,7 +1,5 @@
 """The network that netconvert builds, of roads with every kind of tag: no traffic is tried."""
 
-from __future__ import annotations
-
 import gzip
 import re
 import xml.etree.ElementTree as ET
@@ -248,10 +246,7 @@ HOURS: tuple[tuple[dict[str, str], dict[str, list[tuple[bool, str]]]], ...] = (
     ),
     ({"restriction:conditional": "no_left_turn @ (weight>7.5)"}, {}),
     ({"restriction:hgv:conditional": "no_left_turn @ (07:00-19:00)"}, {}),
-    (
-        {"restriction:conditional": "no_left_turn @ (07:00-19:00)", "except": "bus"},
-        {"l": [(False, "07:00-19:00")]},
-    ),
+    ({"restriction:conditional": "no_left_turn @ (07:00-19:00)", "except": "bus"}, {"l": [(False, "07:00-19:00")]}),
     ({"restriction:conditional": "no_left_turn @ (07:00-19:00)", "except": "motorcar"}, {}),
 )
 """What a relation says; and of the turns from the south that are not always open, when they are."""
@@ -373,8 +368,7 @@ def row_of_crossings(
     tags of nodes on each crossing: ``"s"`` on the southern arm, ``"n"`` on the northern, ``"x"`` in its middle.
 
     Returns:
-        The map, and the ways of the southern arms.
-    """
+        The map, and the ways of the southern arms."""
     made, ways = Map((8.70, 48.59)), []
     for index in range(len(arms) + 2):
         for row, y in (("a", -150.0), ("s", -8.0), ("x", 0.0), ("n", 8.0), ("b", 150.0)):
@@ -671,8 +665,7 @@ def test_who_joins_a_priority_road_yields(build: Build) -> None:
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[] if name in lost.SMALL else pytest.mark.proof) for name in lost.shown()],
+    "name", [pytest.param(name, marks=[] if name in lost.SMALL else pytest.mark.proof) for name in lost.shown()]
 )
 def test_nothing_of_the_maps_of_others_is_lost(sumo: None, name: str) -> None:
     source = lost.extracts().get(name)

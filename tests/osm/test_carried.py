@@ -1,7 +1,5 @@
 """What the map knows of schools, cameras, bus lanes and hours is in the network afterwards."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The two readings of the tags, which share no code, say the same about every road."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from itertools import product

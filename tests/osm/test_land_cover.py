@@ -1,7 +1,5 @@
 """Water, green and buildings of a map: what is kept, how coarse, and what is left out."""
 
-from __future__ import annotations
-
 import gzip
 import re
 from dataclasses import replace

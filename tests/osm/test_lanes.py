@@ -1,7 +1,5 @@
 """The lanes that netconvert is told of (OSM wiki, "Key:lanes", "Lanes", "Key:busway")."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,7 +1,5 @@
 """Maps are fetched from a server that the user names; here one that stands in for it on this machine."""
 
-from __future__ import annotations
-
 import threading
 import urllib.parse
 from collections.abc import Callable, Iterator
@@ -108,11 +106,7 @@ def test_a_busy_server_is_asked_again_after_the_pause_it_names(server: Server, w
     pauses: list[float] = []
     told: list[str] = []
     download(
-        server.url,
-        AREA,
-        tmp_path / "map.osm",
-        tell=lambda stage, _share: told.append(stage),
-        sleep=pauses.append,
+        server.url, AREA, tmp_path / "map.osm", tell=lambda stage, _share: told.append(stage), sleep=pauses.append
     )
     assert pauses == [7.0, 2 * FIRST_PAUSE_S, LONGEST_PAUSE_S]
     assert len(server.asked) == 4

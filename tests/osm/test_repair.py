@@ -1,7 +1,5 @@
 """Lanes that part the lanes for cars are opened where cars would be trapped, and nowhere else."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 
 import pytest

@@ -1,7 +1,5 @@
 """The search for traffic that flows, on figures made up instead of simulated."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -24,7 +22,7 @@ Judge = Callable[[float, float, int], Stability]
 """Scale, step length and number of trips -> figures."""
 
 
-class Searched:
+class _Searched:
     """A search whose trials are judged by a function."""
 
     def __init__(self, judge: Judge, monkeypatch: pytest.MonkeyPatch, options: ImportOptions) -> None:
@@ -58,7 +56,7 @@ def jams_above(scale_max: float) -> Judge:
 
 @pytest.mark.parametrize("scale_max", [1.0, 0.7, 0.3, 0.06, SCALE_MIN])
 def test_the_search_is_bounded_and_ends_near_the_answer(scale_max: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    searched = Searched(jams_above(scale_max), monkeypatch, ImportOptions(name="x"))
+    searched = _Searched(jams_above(scale_max), monkeypatch, ImportOptions(name="x"))
     flow, journeys, stuck = searched.search.run()
     assert 0.4 * scale_max <= flow.scale <= scale_max
     assert flow.step_length_s == OWN_STEP_S
@@ -69,14 +67,14 @@ def test_the_search_is_bounded_and_ends_near_the_answer(scale_max: float, monkey
 
 
 def test_what_never_flows_is_refused_in_bounded_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    searched = Searched(jams_above(0.01), monkeypatch, ImportOptions(name="x"))
+    searched = _Searched(jams_above(0.01), monkeypatch, ImportOptions(name="x"))
     with pytest.raises(UserError, match=r"even at a scale of 0\.05 .*halted"):
         searched.search.run()
     assert len(searched.trials) <= TRIALS
 
 
 def test_a_quick_import_tries_modest_traffic_in_long_steps_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    searched = Searched(jams_above(1.0), monkeypatch, ImportOptions(name="x", quick=True))
+    searched = _Searched(jams_above(1.0), monkeypatch, ImportOptions(name="x", quick=True))
     flow, _, _ = searched.search.run()
     assert searched.trials == [(0.5, 1.0, 600.0)]
     assert flow.scale == 0.5
@@ -89,7 +87,7 @@ def test_trips_that_stand_for_good_are_left_out_and_the_rest_goes_on(monkeypatch
             return replace(FLOWS, teleports=1, stuck=(Stuck(str(left), "12#0_1", "wrong lane"),))
         return FLOWS
 
-    searched = Searched(judge, monkeypatch, ImportOptions(name="x"))
+    searched = _Searched(judge, monkeypatch, ImportOptions(name="x"))
     flow, journeys, stuck = searched.search.run()
     assert flow.scale == 1.0, "the demand of all others stays"
     assert len(journeys) == 997
@@ -102,6 +100,6 @@ def test_a_map_in_which_many_stand_is_not_thinned_out(monkeypatch: pytest.Monkey
     def judge(scale: float, _: float, __: int) -> Stability:
         return replace(FLOWS, teleports=11, stuck=crowd) if scale > 0.5 else FLOWS
 
-    flow, journeys, stuck = Searched(judge, monkeypatch, ImportOptions(name="x")).search.run()
+    flow, journeys, stuck = _Searched(judge, monkeypatch, ImportOptions(name="x")).search.run()
     assert (len(journeys), stuck) == (1000, ())
     assert flow.scale <= 0.5

@@ -1,7 +1,5 @@
 """Water that an extract cuts: which side of a shore is wet."""
 
-from __future__ import annotations
-
 import pytest
 from shapely import Point, union_all
 

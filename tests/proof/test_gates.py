@@ -74,7 +74,7 @@ ALWAYS = verdict.Part(True, "whatever")
 
 
 @dataclass(frozen=True)
-class EverHeated:
+class _EverHeated:
     """Held at any time, so that putting it back changes nothing: what no goal may be."""
 
     writes = frozenset({SEAT.DRIVER_HEATING.path})
@@ -84,7 +84,7 @@ class EverHeated:
 
 
 @dataclass(frozen=True)
-class AnySeat:
+class _AnySeat:
     """Does not care which seat."""
 
     writes = frozenset({SEAT.DRIVER_HEATING.path})
@@ -94,7 +94,7 @@ class AnySeat:
 
 
 @dataclass(frozen=True)
-class AnyRequest:
+class _AnyRequest:
     """Does not care what the road is asked for."""
 
     writes = frozenset({"requests"})
@@ -175,16 +175,18 @@ def test_a_deadline_that_does_not_count_is_seen(ground, monkeypatch):
 
 
 def test_a_goal_that_survives_being_undone_is_seen(ground):
-    stand = ground(changed(goal=EverHeated()))
+    stand = ground(changed(goal=_EverHeated()))
     assert list(gates.undone(stand, stand.reference)) == ["succeeds with everything reverted"]
 
 
 def test_a_goal_that_takes_the_wrong_seat_is_seen(ground):
-    stand = ground(changed(goal=AnySeat(), may_write=frozenset({SEAT.PASSENGER_HEATING.path})))
+    stand = ground(changed(goal=_AnySeat(), may_write=frozenset({SEAT.PASSENGER_HEATING.path})))
     assert any("PassengerSide" in wrong for wrong in gates.near(stand, stand.reference))
 
 
-@pytest.mark.parametrize(("goal", "wrong"), [(AnyRequest(), 1), (road_asked(PullOver), 0)], ids=["any", "that one"])
+@pytest.mark.parametrize(
+    ("goal", "wrong"), [(_AnyRequest(), 1), (road_asked(PullOver), 0)], ids=["any", "that one"]
+)
 def test_a_goal_that_takes_another_request_is_seen(ground, goal, wrong):
     stand = ground(changed(goal=goal, moves=(Open("safety"), Tap("safety.pull_over"))))
     assert list(gates.near(stand, stand.reference)) == ["succeeds with requests something else"] * wrong
@@ -453,13 +455,7 @@ LYON, LEEDS = (4.85, 45.75), (-1.55, 53.80)
     [
         ((), (LYON, LEEDS), (), "", ""),
         (("place",), (LYON, LEEDS), (), "", "screens and vehicle tell all"),
-        (
-            (),
-            (LYON, LEEDS),
-            ("FR", "GB"),
-            "",
-            "it would not hold: the car is driving, in FR",
-        ),
+        ((), (LYON, LEEDS), ("FR", "GB"), "", "it would not hold: the car is driving, in FR"),
         (("place",), (LYON, LEEDS), ("FR", "GB"), "", ""),
         ((), (LYON, LYON), (), "FR.horn", "Switzerland on horn: allowed, not forbidden"),
         (("place",), (LYON, LYON), (), "FR.horn", ""),

@@ -135,9 +135,7 @@ def test_what_a_place_has_is_told_on_its_own_page_only():
 
 def test_a_question_names_only_what_has_been_seen():
     half = replace(
-        HALF,
-        moves=(Consult("Adler or Costa?"),),
-        topics=(Topic("which", (("adler",), ("costa",)), "Adler.", ()),),
+        HALF, moves=(Consult("Adler or Costa?"),), topics=(Topic("which", (("adler",), ("costa",)), "Adler.", ()),)
     )
     (wrong,) = guesses(half, [shown("A. Costa")], {})
     assert "names 'adler'" in wrong

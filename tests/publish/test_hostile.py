@@ -1,7 +1,5 @@
 """Nothing that a hostile evaluation holds reaches a terminal as a control, or a page as markup."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

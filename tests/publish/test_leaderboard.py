@@ -95,10 +95,7 @@ def test_a_bundle_with_a_problem_is_left_out_and_named_and_markup_is_escaped(she
 
 def test_nothing_to_show_is_one_line(tmp_path):
     (tmp_path / "empty").mkdir()
-    for folder, said in (
-        (tmp_path / "empty", "has no valid bundle"),
-        (tmp_path / "none", "is not a folder"),
-    ):
+    for folder, said in ((tmp_path / "empty", "has no valid bundle"), (tmp_path / "none", "is not a folder")):
         with pytest.raises(UserError, match=said):
             write_leaderboard(folder, tmp_path / "page.html")
     assert not (tmp_path / "page.html").exists()

@@ -1,7 +1,5 @@
 """Plots: numbers along axes are written out, legends fit, and each is a file for everybody."""
 
-from __future__ import annotations
-
 import re
 import warnings
 

@@ -41,11 +41,9 @@ def succeeds(job):
     """asurada wins all, t3a the first halves, always-alert the first half of the speed task."""
     setup = job
     first = setup.half == "first"
-    return {
-        "asurada": True,
-        "t3a": first,
-        "always-alert": first and setup.task == "road_speed_80_in_50",
-    }[setup.agent]
+    return {"asurada": True, "t3a": first, "always-alert": first and setup.task == "road_speed_80_in_50"}[
+        setup.agent
+    ]
 
 
 @pytest.fixture(scope="module")

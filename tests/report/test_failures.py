@@ -1,7 +1,5 @@
 """Failure classes on planted faults: agents that know the way and go wrong in one respect, on the small grid."""
 
-from __future__ import annotations
-
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -32,7 +30,7 @@ def declines(status: GoalStatus, reason: Reason = Reason.NONE) -> Action:
     return Action(ActionType.STATUS, goal_status=status, reason=reason)
 
 
-class Planted:
+class _Planted:
     """Plays a list of actions, or of functions of the observation that give one."""
 
     name = model = "planted"
@@ -138,7 +136,7 @@ PLANTED: dict[FailureClass, list[tuple[str, str, Sequence[Any], str]]] = {
 def classified(task: str, half: str, moves: Sequence[Any], thought: str, simulations: Simulations) -> FailureClass:
     setup = EpisodeSetup(task, half, "grid", agent="planted", model="planted")
     recorder = Recorder(setup, None)
-    row = run_trial(setup, Planted(moves, thought), [recorder], simulations=simulations)
+    row = run_trial(setup, _Planted(moves, thought), [recorder], simulations=simulations)
     assert isinstance(row, EpisodeRow)
     assert row.success is False, row.error
     return failure_class(row, recorder.lines)

@@ -1,7 +1,5 @@
 """The table of touch, functions and both: means and paired differences, by hand."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What pages share."""
 
-from __future__ import annotations
-
 import re
 
 from automotive_cosim.report.templates import render

@@ -1,7 +1,5 @@
 """Which act did it: laws over small recorded trials on the grid."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The driver's load against values worked by hand."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from types import SimpleNamespace
 from typing import Any

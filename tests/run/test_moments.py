@@ -9,16 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.contracts import (
-    NO_LIMIT,
-    GoalStatus,
-    GpsFix,
-    Limit,
-    LimitSource,
-    PullOver,
-    Reroute,
-    SlowDown,
-)
+from automotive_cosim.contracts import NO_LIMIT, GoalStatus, GpsFix, Limit, LimitSource, PullOver, Reroute, SlowDown
 from automotive_cosim.errors import UserError
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.locate import Geo

@@ -1,7 +1,5 @@
 """The recorded road of an episode."""
 
-from __future__ import annotations
-
 import gzip
 import json
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Rows come back from their lines, those of older versions too, and bad ones are told."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import MISSING, fields, replace
 from typing import Any
@@ -61,10 +59,7 @@ def comes_back(row):
 
 @pytest.mark.parametrize(
     ("kind", "required"),
-    [
-        (EpisodeRow, "id task half pair dimension module scenario agent model seed"),
-        (Proof, "id task seed"),
-    ],
+    [(EpisodeRow, "id task half pair dimension module scenario agent model seed"), (Proof, "id task seed")],
 )
 def test_whatever_is_added_to_a_row_has_a_default_so_that_older_lines_are_still_read(kind, required):
     assert required_of(kind) == set(required.split())

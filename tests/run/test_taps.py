@@ -1,7 +1,5 @@
 """Taps by pixel against values worked by hand."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

@@ -59,7 +59,7 @@ class Planned:
         return JobRow(id=self.id, error=error, error_kind=error, wall_seconds=self.own_s)
 
 
-class Clocked:
+class _Clocked:
     """An executor, its workers' clock, and the store of what they did."""
 
     def __init__(self, count: int, done: Sequence[JobRow] = (), *, tells: bool = False) -> None:
@@ -73,10 +73,10 @@ class Clocked:
     def append(self, row: JobRow) -> None:
         self.rows[row.id] = row
 
-    def start(self, opener: object, folder: Path) -> ClockedWorker:
-        return ClockedWorker(self)
+    def start(self, opener: object, folder: Path) -> _ClockedWorker:
+        return _ClockedWorker(self)
 
-    def wait(self, handles: Sequence[ClockedWorker], timeout_s: float) -> list[ClockedWorker]:
+    def wait(self, handles: Sequence[_ClockedWorker], timeout_s: float) -> list[_ClockedWorker]:
         first = min((worker for worker in handles if worker.job), key=lambda worker: worker.ends_s)
         if self.tells and first.ends_s > self.now_s + TOLD_EVERY_S:
             self.now_s += TOLD_EVERY_S
@@ -85,10 +85,10 @@ class Clocked:
         return [first]
 
 
-class ClockedWorker:
+class _ClockedWorker:
     is_ready = True
 
-    def __init__(self, clock: Clocked) -> None:
+    def __init__(self, clock: _Clocked) -> None:
         self.clock = clock
         self.job: Planned | None = None
         self.warm: tuple[str, int] | None = None
@@ -104,7 +104,7 @@ class ClockedWorker:
         return JobPhase("at work", False, (now_s - self.warmed_s) / (self.ends_s - self.warmed_s))
 
     @property
-    def handles(self) -> list[ClockedWorker]:
+    def handles(self) -> list[_ClockedWorker]:
         return [self]
 
     def give(self, job: Planned) -> None:
@@ -140,7 +140,7 @@ def play(
 ) -> Told:
     """Runs a plan of which a share is done already, with workers that may tell how far they are."""
     rng = random.Random(1)
-    clock = Clocked(workers, [job.row() for job in jobs if rng.random() < share], tells=tells)
+    clock = _Clocked(workers, [job.row() for job in jobs if rng.random() < share], tells=tells)
     monkeypatch.setattr(batch, "time", clock)
     told: Told = []
 
@@ -246,10 +246,10 @@ def test_jobs_that_tell_how_far_they_are_are_known_from_the_first_minute(workers
     assert right >= 0.97 * len(shown), shown
 
 
-class SpendingMeter:
+class _SpendingMeter:
     """Ten tokens a second."""
 
-    def __init__(self, clock: Clocked) -> None:
+    def __init__(self, clock: _Clocked) -> None:
         self.clock = clock
 
     def spent(self) -> Spent:
@@ -264,7 +264,7 @@ BUDGET = Budget(tokens=2500)
 
 def test_the_time_left_ends_with_the_budget(monkeypatch):
     """At ten tokens a second, the 2,000 that are left last for 200 s; the jobs would take much longer."""
-    clock = Clocked(1)
+    clock = _Clocked(1)
     monkeypatch.setattr(batch, "time", clock)
     monkeypatch.setattr(batch._Batch, "_note_spent", lambda batch: None)
     told: list[tuple[float, float | None, str]] = []
@@ -273,7 +273,7 @@ def test_the_time_left_ends_with_the_budget(monkeypatch):
         told.append((clock.now_s, progress.left_s, progress.budget))
 
     jobs = alike(1, 100, 10.0, 0.0)
-    end = run_jobs(jobs, clock, nobody, executor=clock, limit=SpendingMeter(clock), budget=BUDGET, tell=tell)  # type: ignore[arg-type, misc, call-overload]
+    end = run_jobs(jobs, clock, nobody, executor=clock, limit=_SpendingMeter(clock), budget=BUDGET, tell=tell)  # type: ignore[arg-type, misc, call-overload]
     assert end.stopped == "spent"
     assert told[0] == (0.0, None, "2,000 of 2,500 tokens left")
     known = [(now_s, left_s) for now_s, left_s, _ in told if left_s is not None and now_s > 60]
@@ -302,13 +302,7 @@ def test_what_is_known_to_be_out_of_reach_takes_no_time(monkeypatch):
 
 @pytest.mark.parametrize(
     ("left_s", "done", "said"),
-    [
-        (None, 1, ""),
-        (7.9, 1, "0:07 left"),
-        (185.0, 1, "3:05 left"),
-        (3785.0, 1, "1:03:05 left"),
-        (9.0, 2, ""),
-    ],
+    [(None, 1, ""), (7.9, 1, "0:07 left"), (185.0, 1, "3:05 left"), (3785.0, 1, "1:03:05 left"), (9.0, 2, "")],
 )
 def test_the_time_left_is_told_in_hours_minutes_and_seconds(left_s, done, said):
     assert time_left(SimpleNamespace(left_s=left_s, done=done, planned=2)) == said

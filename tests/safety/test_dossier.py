@@ -1,7 +1,5 @@
 """The safety report: made-up drives, whose figures are known."""
 
-from __future__ import annotations
-
 import csv
 import json
 from dataclasses import asdict, replace

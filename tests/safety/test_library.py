@@ -1,7 +1,5 @@
 """The library of logical scenarios."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Trials as evidence for a protocol's rows, and the calculator that runs beside this package."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The search: samplers, minimal failures, findings, and the space's file."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A search in SUMO: its folder is an evaluation, and goes on where it was stopped."""
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A scenario's proof: what is shipped holds, and each kind of slip is found."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Any SUMO scenario and any network run as they are, from folders that nothing is written to."""
 
-from __future__ import annotations
-
 import pickle
 import re
 import shutil

@@ -1,7 +1,5 @@
 """A network at another place on earth: the same metres, that place's law, clock and climate."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Pictures of scenarios: everything that is declared is drawn, and names and signs lie clear of each other."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 from itertools import combinations

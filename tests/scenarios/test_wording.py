@@ -1,7 +1,5 @@
 """Incidents in one line."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The shipped schemas are those of the types, and take what is shipped and what the docs show."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """The ego on a scripted road: a car that moves by simple kinematics, and its pedals."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

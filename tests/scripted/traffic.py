@@ -54,8 +54,7 @@ class Scripted:
             start_speed_kmh: speed in it.
 
         Raises:
-            ScenarioError: there is no stretch, or one has no length.
-        """
+            ScenarioError: there is no stretch, or one has no length."""
         if not stretches or any(stretch.length_m <= 0 for stretch in stretches):
             raise ScenarioError("a scripted road requires at least one stretch, each longer than 0 m")
         self._layout = Layout(tuple(stretches), origin, math.radians(heading_deg))
@@ -71,9 +70,7 @@ class Scripted:
     def depart(self, plan: EgoPlan) -> ScriptedTraffic:
         """Starts a drive from the beginning of the road, whatever the plan's trip.
 
-        Raises:
-            UnknownNameError: no such driver.
-        """
+        Raises UnknownNameError: no such driver."""
         start_mps = 0.0 if plan.parked else self._start_mps
         car = ScriptedCar(
             self._layout, profile(plan.driver), self._step_s, self._start_s, start_mps, parked=plan.parked

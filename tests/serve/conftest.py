@@ -1,7 +1,5 @@
 """Records made by hand, and a server that shows them: nothing here starts SUMO."""
 
-from __future__ import annotations
-
 import gzip
 import http.client
 import json
@@ -114,13 +112,7 @@ def write_drive(folder: Path) -> Path:
     (folder / "screenshots").mkdir(parents=True)
     lines = [
         {
-            **{
-                "step": number,
-                "picture": min(number, 1),
-                "at_s": 2.0 * number,
-                "local_time": "",
-                "words": "waits",
-            },
+            **{"step": number, "picture": min(number, 1), "at_s": 2.0 * number, "local_time": "", "words": "waits"},
             **{"action": None, "target": None, "feedback": {"code": "ok", "text": ""}, "thought": "", "stages": []},
             **{"context": "", "speed_kmh": 72.0},
         }
@@ -150,12 +142,7 @@ def write_evaluation(
 ) -> Path:
     (folder / "traces").mkdir(parents=True)
     (folder / "pictures" / "one" / "screenshots").mkdir(parents=True)
-    plan = {
-        "format": 1,
-        "plan": {"agents": [agent]},
-        "episodes": 2,
-        "starts": [{"started": "2026-11-22T18:00:00"}],
-    }
+    plan = {"format": 1, "plan": {"agents": [agent]}, "episodes": 2, "starts": [{"started": "2026-11-22T18:00:00"}]}
     (folder / "manifest.json").write_text(json.dumps(plan), encoding="utf-8")
     rows = [
         EpisodeRow(

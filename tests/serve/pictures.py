@@ -7,8 +7,6 @@
 Records what the pages show first, into ``runs/pictures`` or another folder, unless it is there: some minutes.
 """
 
-from __future__ import annotations
-
 import argparse
 import io
 import json
@@ -92,7 +90,7 @@ def begin(*words: object) -> subprocess.Popen[bytes]:
 
 
 @dataclass
-class Studio:
+class _Studio:
     """A server that shows records, and a browser."""
 
     server: WebServer
@@ -136,7 +134,7 @@ class Studio:
 
 
 @contextmanager
-def opened(records: Path, window: dict[str, Any]) -> Iterator[Studio]:
+def opened(records: Path, window: dict[str, Any]) -> Iterator[_Studio]:
     """A studio, in which people can play."""
     played = Path(tempfile.mkdtemp())
     people = PeoplePlan(("heron", "fox", "owl", "otter"), ("hvac_fan_max", "hvac_fan_percent"), scenario="grid")
@@ -149,7 +147,7 @@ def opened(records: Path, window: dict[str, Any]) -> Iterator[Studio]:
             browser = driver.chromium.launch(
                 executable_path=shutil.which("chromium"), args=["--no-sandbox"] if is_root else []
             )
-            yield Studio(server, browser, window, records)
+            yield _Studio(server, browser, window, records)
             browser.close()
     finally:
         server.shutdown()
@@ -157,7 +155,7 @@ def opened(records: Path, window: dict[str, Any]) -> Iterator[Studio]:
         shutil.rmtree(played, ignore_errors=True)
 
 
-def live(studio: Studio) -> Any:
+def live(studio: _Studio) -> Any:
     """A study while it runs; begun here, unless it is there already."""
     if (studio.records / "study").exists():
         return None
@@ -170,14 +168,14 @@ def live(studio: Studio) -> Any:
     return page
 
 
-def decision(studio: Studio) -> Any:
+def decision(studio: _Studio) -> Any:
     page = studio.open(f"#/decisions/{studio.study()}?show=better")
     page.locator("tbody a").first.click()
     page.get_by_label("Seconds since the decision").fill("420")
     return page
 
 
-def play(studio: Studio) -> Any:
+def play(studio: _Studio) -> Any:
     page = studio.open("#/play?task=hvac_fan_max")
     page.get_by_role("checkbox").check()
     page.get_by_role("button", name="Begin").click()
@@ -190,7 +188,7 @@ def play(studio: Studio) -> Any:
     return page
 
 
-def people(studio: Studio) -> Any:
+def people(studio: _Studio) -> Any:
     page = studio.open("#/study", studio.server.people_address)
     page.get_by_label("Your code name").select_option("heron")
     page.get_by_role("button", name="Take part").click()
@@ -202,7 +200,7 @@ def people(studio: Studio) -> Any:
     return page
 
 
-def episode(studio: Studio) -> Image.Image:
+def episode(studio: _Studio) -> Image.Image:
     """The main job's film when the driver has just been warned: three actions after the hand-over."""
     film = Image.open(studio.records / "run" / "episode.webp")
     shown_ms = []
@@ -213,12 +211,12 @@ def episode(studio: Studio) -> Image.Image:
     return film
 
 
-def compare(studio: Studio) -> Any:
+def compare(studio: _Studio) -> Any:
     run = studio.record("agents")
     return studio.open(f"#/compare/{run}/{run}")
 
 
-PICTURES: dict[str, Callable[[Studio], Any]] = {
+PICTURES: dict[str, Callable[[_Studio], Any]] = {
     "main_job": episode,
     "runs": lambda studio: studio.open("#/"),
     "replay": lambda studio: studio.open(f"#/run/{studio.episode('oracle')}?at=2"),

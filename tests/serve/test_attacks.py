@@ -1,7 +1,5 @@
 """Whatever lies in a run folder, and however requests come, the other pages are shown and nothing leads out."""
 
-from __future__ import annotations
-
 import http.client
 import json
 import os

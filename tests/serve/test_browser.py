@@ -200,7 +200,7 @@ PLAYED = {
 """A task of each module, which runs in the small scenario."""
 
 
-class Overseen(Game):
+class _Overseen(Game):
     """Knows the episode, so that a test can tell what would be right."""
 
     episode: Episode
@@ -222,7 +222,7 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.2)
 
 
-def boxes(game: Overseen) -> dict[str, BoundingBox]:
+def boxes(game: _Overseen) -> dict[str, BoundingBox]:
     """What can be tapped, by its text."""
     return {each.text: each.bbox_pixels for each in game.episode.elements if each.is_clickable and each.text}
 
@@ -236,7 +236,7 @@ def until(page: Any, holds: Callable[[], bool]) -> None:
     raise AssertionError("it never came true")
 
 
-def perform(page: Any, action: Action, game: Overseen) -> int:
+def perform(page: Any, action: Action, game: _Overseen) -> int:
     """An action by hand; returns how many acts it takes."""
     if action.action_type is ActionType.OPEN_APP:  # by the dock, or by a tile
         app = str(action.app_name).capitalize()
@@ -283,7 +283,7 @@ def test_the_reference_solution_of_a_task_of_each_module_succeeds_by_hand(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path, simulations: Simulations
 ) -> None:
     assert set(PLAYED) == set(Module)
-    game = Overseen(tmp_path, "grid", simulations)
+    game = _Overseen(tmp_path, "grid", simulations)
     page = opened(serving(tmp_path, game=game))
     for task in PLAYED.values():
         page.get_by_role("link", name="Play").click()

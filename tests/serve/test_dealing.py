@@ -1,7 +1,5 @@
 """What a study deals to whom, for every number of people and tasks."""
 
-from __future__ import annotations
-
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path
@@ -36,8 +34,7 @@ def test_a_williams_design_is_balanced(count: int) -> None:
 
 @pytest.mark.parametrize("people", [1, 2, 5])
 @pytest.mark.parametrize(
-    "tasks",
-    [PAIRS[:2], PAIRS, [PAIRS[0], SINGLES[0]], [*PAIRS[:1], *SINGLES], [*PAIRS[:3], *SINGLES[:2]], SINGLES],
+    "tasks", [PAIRS[:2], PAIRS, [PAIRS[0], SINGLES[0]], [*PAIRS[:1], *SINGLES], [*PAIRS[:3], *SINGLES[:2]], SINGLES]
 )
 def test_everybody_plays_everything_and_never_both_halves_in_a_row(people: int, tasks: list[str]) -> None:
     jobs, _ = dealt(people, tasks)

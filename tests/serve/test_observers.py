@@ -1,7 +1,5 @@
 """The mark that tells a running program that somebody watches."""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 

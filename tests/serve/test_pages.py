@@ -1,7 +1,5 @@
 """What the pages are given: live records from where a reader was, every task and scenario, texts only as text."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import re

@@ -1,7 +1,5 @@
 """A person plays: the acts of a page, in seconds, judged as an agent's."""
 
-from __future__ import annotations
-
 import json
 import time
 from collections.abc import Callable

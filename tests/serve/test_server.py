@@ -1,7 +1,5 @@
 """Who gets an answer from the server, and that it never reads outside its folders."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A study with people whose episodes end at once: nothing here starts SUMO."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

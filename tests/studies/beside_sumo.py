@@ -3,8 +3,6 @@
 ``python -m tests.studies.beside_sumo`` writes the tables of ``docs/reference/beside-sumo.md``.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """A network of two ways that can be reckoned by hand, drawn here, and studies of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 
@@ -89,8 +87,7 @@ Draw = Callable[..., Path]
 def two_ways(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Draw:
     """Draws the network in a new folder, with other demand or more in its ``scenario.toml`` if wanted.
 
-    Edges meet in points: junctions have no length, so that a way is as long as its edges.
-    """
+    Edges meet in points: junctions have no length, so that a way is as long as its edges."""
     drawn = tmp_path_factory.mktemp("drawn")
     nodes = "".join(f'<node id="{name}" x="{x}" y="{y}" type="priority"/>' for name, (x, y) in NODES.items())
     edges = "".join(

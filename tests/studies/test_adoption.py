@@ -1,7 +1,5 @@
 """A town in which more and more cars have an assistant: who is silent changes nothing, and how the rest is told."""
 
-from __future__ import annotations
-
 import json
 import threading
 from collections.abc import Callable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The traffic of others' files is SUMO's, as a congestion study drives it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from contextlib import closing

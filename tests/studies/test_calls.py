@@ -1,7 +1,5 @@
 """What studies call in the process of a simulation, against SUMO itself."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Congestion of a network: what SUMO writes, what is made of it, and that an intervention alone differs."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from dataclasses import MISSING, fields, replace
@@ -13,12 +11,12 @@ from typer.testing import CliRunner
 
 from automotive_cosim.cli.batches import ProgressView
 from automotive_cosim.cli.console import Console
+from automotive_cosim.cli.main import app
 from automotive_cosim.cli.results import report
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.incidents import EgoIncident
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.studies import load_study
-from automotive_cosim.studies.commands import app
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows
 from automotive_cosim.studies.congestion.page import answer, warnings
 from automotive_cosim.studies.congestion.plan import INTERVENTIONS, CongestionPlan
@@ -254,18 +252,18 @@ def test_the_frame_has_each_seed_and_measure_of_every_network(driven: Path, tmp_
 
 def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> None:
     again = shutil.copytree(driven, tmp_path / "suite" / "again")
-    told = CliRunner().invoke(app, ["compare", str(driven), str(again), "--json"])
+    told = CliRunner().invoke(app, ["study", "compare", str(driven), str(again), "--json"])
     assert told.exit_code == 0
     assert json.loads(told.output)["same"]
     lines = again / "episodes.jsonl"
     row = json.loads(lines.read_text(encoding="utf-8"))
     lines.write_text(json.dumps(row | {"scenario": "elsewhere", "wall_seconds": 9.0}) + "\n", encoding="utf-8")
-    told = CliRunner().invoke(app, ["compare", str(driven), str(again)])
+    told = CliRunner().invoke(app, ["study", "compare", str(driven), str(again)])
     assert told.exit_code == 0, "where the files are is no result"
     assert f"| {driven} and {again} |" in told.output
     row["outcomes"][1]["cells"][0]["flow"]["lost_s"] += 3600.0
     lines.write_text(json.dumps(row) + "\n", encoding="utf-8")
-    told = CliRunner().invoke(app, ["compare", str(driven), str(again)])
+    told = CliRunner().invoke(app, ["study", "compare", str(driven), str(again)])
     assert told.exit_code == 1
     assert "1 of 1 row differ" in told.output
     assert "| delay, roadworks on main at 9 km/h |" in told.output

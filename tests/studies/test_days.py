@@ -1,7 +1,5 @@
 """From day to day: who is advised, what is remembered, when it has settled, and what is said of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

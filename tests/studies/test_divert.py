@@ -1,7 +1,5 @@
 """Cars that take the ego's other way: where it parts and rejoins, and whose routes can take it."""
 
-from __future__ import annotations
-
 import pytest
 
 from automotive_cosim.studies.calls.divert import diverted, section

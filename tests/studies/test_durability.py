@@ -115,7 +115,7 @@ COMMANDS = {
 }  # fmt: skip
 
 
-class Disturbed:
+class _Disturbed:
     """Starts a command again and again."""
 
     def __init__(self, command: Command, place: Path, rooms: Path, program: Any) -> None:
@@ -161,7 +161,7 @@ def is_one_line(err: str) -> bool:
 
 
 def killed(
-    disturbed: Disturbed, expected: tuple[int, Any], last_s: float, kills: int, session: Any, until: Any
+    disturbed: _Disturbed, expected: tuple[int, Any], last_s: float, kills: int, session: Any, until: Any
 ) -> None:
     """Kills it at random moments of all that it does, going on each time, and begins anew when it has ended."""
     random, out, done = Random(1), disturbed.fresh(), 0
@@ -180,7 +180,7 @@ def killed(
     assert not left_over(out)
 
 
-def has_ended(disturbed: Disturbed, out: Path, code: int, expected: tuple[int, Any]) -> bool:
+def has_ended(disturbed: _Disturbed, out: Path, code: int, expected: tuple[int, Any]) -> bool:
     """Whether the result is there; a kill may come when the folder has appeared, which is not made again."""
     was_there = code == 2 and f"{out} exists" in (out.parent / "err").read_text().splitlines()[-1]
     return (expected[0] if was_there else code, disturbed.command.result(out)) == expected
@@ -191,7 +191,7 @@ def left_over(out: Path) -> list[Path]:
     return list(out.parent.rglob(".*"))
 
 
-def twice(disturbed: Disturbed, expected: tuple[int, Any]) -> None:
+def twice(disturbed: _Disturbed, expected: tuple[int, Any]) -> None:
     """Starts it twice at once: one is refused or comes after the other."""
     out = disturbed.fresh()
     both = [disturbed.start(out) for _ in range(2)]
@@ -204,7 +204,7 @@ def twice(disturbed: Disturbed, expected: tuple[int, Any]) -> None:
     assert not left_over(out)
 
 
-def without_room(disturbed: Disturbed, expected: tuple[int, Any], place: Path) -> None:
+def without_room(disturbed: _Disturbed, expected: tuple[int, Any], place: Path) -> None:
     """In a folder that cannot be written, in a full one, and again with room."""
     given = disturbed.fresh().parent
     room, kept, log = place / "full", place / "kept", place / "log"
@@ -249,7 +249,7 @@ def place(tmp_path_factory: pytest.TempPathFactory, sumo: None) -> Path:
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_disturbed_command_goes_on_to_the_same_result(name, place, tmp_path, program, session, until):
-    disturbed = Disturbed(COMMANDS[name], place, tmp_path, program)
+    disturbed = _Disturbed(COMMANDS[name], place, tmp_path, program)
     began_s, out = time.monotonic(), disturbed.fresh()
     code = disturbed.whole(out)
     last_s = time.monotonic() - began_s
@@ -267,7 +267,7 @@ def test_a_disturbed_command_goes_on_to_the_same_result(name, place, tmp_path, p
 @pytest.mark.slow
 def test_a_disturbed_report_goes_on_to_the_same_tables(tmp_path, program, session, until):
     write(tmp_path / "given", range(2))
-    disturbed = Disturbed(COMMANDS["report"], tmp_path, tmp_path, program)
+    disturbed = _Disturbed(COMMANDS["report"], tmp_path, tmp_path, program)
     began_s, out = time.monotonic(), disturbed.fresh()
     expected = disturbed.whole(out), COMMANDS["report"].result(out)
     assert expected[1]

@@ -1,7 +1,5 @@
 """The gap of a demand by hand, and a demand that finds its routes."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The plan of every study: what cannot be run is refused in a line, and what was run is read back."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Studies find what can be reckoned by hand, and SUMO's own outputs say the same."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator
 from contextlib import closing
@@ -50,8 +48,7 @@ def reckoned_s() -> tuple[float, float]:
 
     The ego begins with its front bumper 4.6 m into the road, at the limit. On the main road it comes up behind the
     last lorry that is on its way 100 m in, and follows it: a lorry's length, the gap at a standstill and a second's
-    headway behind. At the end of the main road the lorry turns off.
-    """
+    headway behind. At the end of the main road the lorry turns off."""
     access_s = (length_m("access") - 4.6) / SPEED_MPS
     other_s = access_s + length_m("out", "back", "exit") / SPEED_MPS
     behind_m = 7.5 + 2.5 + 1.0 * SLOW_MPS

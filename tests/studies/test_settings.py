@@ -1,7 +1,5 @@
 """What studies can be told, and what they write, keep the laws of all commands and rows."""
 
-from __future__ import annotations
-
 from automotive_cosim.studies.calibration.settings import CalibrationOptions
 from automotive_cosim.studies.commands.reroute import IN_PYTHON
 from automotive_cosim.studies.equilibrium.settings import EquilibriumSettings, OptimumSettings

@@ -1,7 +1,5 @@
 """What is made of the futures: choices, ties, intervals, gridlock, the effect on the others."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product

@@ -1,7 +1,5 @@
 """Whole studies: the order and number of workers, resuming, what is kept out, the report, the command."""
 
-from __future__ import annotations
-
 import csv
 import gzip
 import hashlib
@@ -17,6 +15,7 @@ from statistics import median
 import pytest
 from typer.testing import CliRunner
 
+from automotive_cosim.cli.main import app
 from automotive_cosim.cli.results import report
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
@@ -31,7 +30,6 @@ from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies import intervals, load_study
 from automotive_cosim.studies.calls.chance import Fresh
-from automotive_cosim.studies.commands import app
 from automotive_cosim.studies.reroute import batch
 from automotive_cosim.studies.reroute.batch import REROUTE
 from automotive_cosim.studies.reroute.data import futures
@@ -622,7 +620,7 @@ def test_the_reference_agents_get_there_faster(two_ways: Draw, tmp_path: Path) -
 
 
 def invoke(*words: str) -> tuple[str, Exception | None]:
-    result = CliRunner().invoke(app, list(words))
+    result = CliRunner().invoke(app, ["study", *words])
     error = result.exception
     return result.output, error if isinstance(error, Exception) else None
 

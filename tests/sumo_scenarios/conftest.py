@@ -4,8 +4,6 @@ The scenarios are data, which cannot go wrong while nobody touches them: what is
 their traffic is a proof (``proven``).
 """
 
-from __future__ import annotations
-
 import math
 import xml.etree.ElementTree as ET
 from collections import defaultdict

@@ -5,8 +5,6 @@ python -m tests.sumo_scenarios.proven beauce     # proves that one, and notes th
 python -m tests.sumo_scenarios.proven --all      # proves each, which takes minutes
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

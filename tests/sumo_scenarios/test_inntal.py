@@ -1,7 +1,5 @@
 """What drivers under the gantries of the Inn valley are shown, as SUMO's variable speed signs have it."""
 
-from __future__ import annotations
-
 from contextlib import closing
 
 import pytest

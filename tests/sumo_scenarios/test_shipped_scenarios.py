@@ -1,7 +1,5 @@
 """Laws that every scenario in the package keeps."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from itertools import pairwise

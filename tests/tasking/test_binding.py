@@ -1,7 +1,5 @@
 """A safety task in another network rests on what is in force there, or says what is missing."""
 
-from __future__ import annotations
-
 from datetime import datetime
 from functools import cache
 from zoneinfo import ZoneInfo

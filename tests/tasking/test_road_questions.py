@@ -1,7 +1,5 @@
 """Questions about the car in front, the range and the speed that an alert names, on moments made by hand."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

@@ -34,10 +34,7 @@ LEAST = {
 """By dimension, in ``Dimension``'s order; 185 together."""
 
 
-FAMILIES = {
-    Suite.SPEED: (60, 9, 4, tuple(Language)),
-    Suite.VOICE: (30, 10, 1, (Language.ENGLISH,)),
-}
+FAMILIES = {Suite.SPEED: (60, 9, 4, tuple(Language)), Suite.VOICE: (30, 10, 1, (Language.ENGLISH,))}
 """The suites of families: how many pairs and families at least, how many in each, and the languages."""
 OF_FAMILIES = [task for task in TASKS if task.suite in FAMILIES]
 

@@ -1,7 +1,5 @@
 """Laws over the hard suite."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 from automotive_cosim.cockpit.apps.phone.state import Thread

@@ -12,8 +12,6 @@ situation and of the words is new. A form may be used ``USES`` times. Of all pai
 in four thousand is that near.
 """
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterator, Sequence

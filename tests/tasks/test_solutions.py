@@ -1,7 +1,5 @@
 """Laws over every half's reference solutions on a bare cockpit: clean as they are, but not with one switch more."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from types import SimpleNamespace
@@ -70,7 +68,7 @@ pytestmark = pytest.mark.slow
 
 
 @dataclass
-class Solved:
+class _Solved:
     """A reference solution, played to its declaration."""
 
     cockpit: Cockpit
@@ -108,11 +106,7 @@ def _hand_over_s(start: Start) -> int:
 
 
 def _taken_over(
-    task: Task,
-    half: str,
-    network: RoadNetwork,
-    language: Language = Language.ENGLISH,
-    make: CarMake = CarMake.HOME,
+    task: Task, half: str, network: RoadNetwork, language: Language = Language.ENGLISH, make: CarMake = CarMake.HOME
 ) -> tuple[Instance, Cockpit]:
     """The instance, and the cockpit some seconds after departure."""
     instance = draw(task, half, 0, language=language, make=make)
@@ -148,7 +142,7 @@ def _solved(
     *,
     by_pixels: bool = False,
     size: ScreenSize = ScreenSize.STANDARD,
-) -> Solved:
+) -> _Solved:
     start, car = instance.half.start, cockpit.copy()
     car.resize(size)
     oracle, feedback = Oracle(), Feedback(FeedbackCode.NONE, "")
@@ -184,7 +178,7 @@ def _solved(
         for request in car.drain_requests():
             car.answered(request, Answer(True, "so it is"))
     beside = counterfactual(cockpit, car.given, moments, instance.half.allowed_writes)
-    return Solved(car, moments, dict(beside))
+    return _Solved(car, moments, dict(beside))
 
 
 @dataclass
@@ -194,7 +188,7 @@ class Played:
     id: str
     instance: Instance
     cockpit: Cockpit
-    solved: Solved
+    solved: _Solved
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """Laws over what drivers say in French, German and Japanese."""
 
-from __future__ import annotations
-
 import re
 from contextlib import closing
 from functools import cache

@@ -1,7 +1,5 @@
 """What a start shows is plausible where and when it is."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from datetime import datetime

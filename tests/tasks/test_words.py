@@ -1,7 +1,5 @@
 """Laws over words: what readers have stumbled over, wherever it can be computed."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator

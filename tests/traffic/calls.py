@@ -1,7 +1,5 @@
 """Functions that the tests call in the process of a simulation."""
 
-from __future__ import annotations
-
 from automotive_cosim.traffic.running import Running
 
 

@@ -1,7 +1,5 @@
 """Scenarios made from the grid, and simulations of it that tests may share."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path

@@ -25,8 +25,7 @@ from automotive_cosim.traffic.world import World
 class InProcess:
     """A simulation in this process: without messages, but only one at a time.
 
-    A second ``depart`` loads and warms up again.
-    """
+    A second ``depart`` loads and warms up again."""
 
     _current: InProcess | None = None
 
@@ -49,8 +48,7 @@ class InProcess:
         Raises:
             ScenarioError: the scenario cannot be loaded.
             SetupError: libsumo is missing or unsuitable.
-            TrafficError: this process already has a simulation.
-        """
+            TrafficError: this process already has a simulation."""
         if InProcess._current is not None:
             raise TrafficError("this process already has a simulation; close it first, or use fork.Forked")
         self.setup = Setup(scenario, seed, allow_unprojected)
@@ -70,8 +68,7 @@ class InProcess:
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
             NoRoomError: no gap opened for it.
-            TrafficError: SUMO failed, or the simulation is closed.
-        """
+            TrafficError: SUMO failed, or the simulation is closed."""
         if self.world is None:
             raise TrafficError("the simulation is closed")
         if not self._fresh:

@@ -1,7 +1,5 @@
 """Water, green and buildings: which polygons of additional files are areas, and what is wrong with one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """In this process or forked: the same seed gives the same drive, to the last bit."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Sequence
 from contextlib import closing

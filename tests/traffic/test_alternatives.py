@@ -1,7 +1,5 @@
 """Other ways to the goal: what is offered, how honest its times are, and that nothing is left behind."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace

@@ -3,8 +3,6 @@
 Every row was seen in SUMO 1.28.0. One that fails with another version tells what that version does differently.
 """
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager, suppress

@@ -1,7 +1,5 @@
 """A confined process can write to its folder only."""
 
-from __future__ import annotations
-
 import socket
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Post-encroachment times of planned crossings."""
 
-from __future__ import annotations
-
 import re
 from types import SimpleNamespace
 from typing import Any, ClassVar

@@ -1,7 +1,5 @@
 """Traffic with routes of its own finds its way round whatever is closed: no vehicle ends the run."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from contextlib import closing

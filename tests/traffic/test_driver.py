@@ -1,7 +1,5 @@
 """The driver's profiles, and how it makes room for others when told."""
 
-from __future__ import annotations
-
 import math
 import shutil
 from collections.abc import Callable, Iterator

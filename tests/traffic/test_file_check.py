@@ -1,7 +1,5 @@
 """What a scenario of others may make SUMO do: nothing outside a run's scratch folder."""
 
-from __future__ import annotations
-
 import errno
 import gzip
 import re
@@ -259,10 +257,7 @@ def test_so_is_a_file_that_another_names(outer: str, tmp_path: Path) -> None:
     ("text", "words"),
     [
         ("<additional>\n<e9Detector file='x'/></additional>", "line 2: no element of SUMO named 'e9Detector'"),
-        (
-            "<additional xmlns:x='y'>\n<x:include href='x'/></additional>",
-            "line 2: no element of SUMO named 'x:inc",
-        ),
+        ("<additional xmlns:x='y'>\n<x:include href='x'/></additional>", "line 2: no element of SUMO named 'x:inc"),
         ("<additional>\n\n<vType id='t'><param key='device.new.file' value='x'/></vType></additional>", "line 3"),
         (
             "<additional><vType id='t'><param key='has.new.device' value='1'/></vType></additional>",

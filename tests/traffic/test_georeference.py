@@ -1,7 +1,5 @@
 """Which projections are believed, and where a network lies that was moved."""
 
-from __future__ import annotations
-
 import gzip
 import math
 import re
@@ -163,11 +161,7 @@ def test_the_side_of_the_road_is_in_the_first_line(name: str, left: bool) -> Non
 
 
 def test_what_is_no_xml_is_one_line(tmp_path: Path) -> None:
-    for name, content in (
-        ("a.xml", b""),
-        ("b.xml", b"text"),
-        ("d.gz", gzip.compress(b"<")),
-    ):
+    for name, content in (("a.xml", b""), ("b.xml", b"text"), ("d.gz", gzip.compress(b"<"))):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(ScenarioError, match="is not XML"):
             drives_on_left(tmp_path / name)

@@ -1,7 +1,5 @@
 """Every kind of incident happens in SUMO as the scenario's file declares it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace

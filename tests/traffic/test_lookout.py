@@ -1,7 +1,5 @@
 """Looking at the road shows what SUMO has, and changes nothing."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """The mirror image of a network drives as the network does, on the other side."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Streets of a moved network have names that a place there could have, not their own."""
 
-from __future__ import annotations
-
 import itertools
 
 import pytest

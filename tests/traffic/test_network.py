@@ -1,7 +1,5 @@
 """Networks: what the edges say, and how the sums over a route hold up against SUMO's own."""
 
-from __future__ import annotations
-
 import gzip
 import math
 import shutil
@@ -258,7 +256,7 @@ def test_delay_and_relative_speed_agree(town: Network, speed_mps: float) -> None
         assert (ahead.jam_length_m > 0) <= (ahead.relative_speed < 1)
 
 
-class NoRouter:
+class _NoRouter:
     """A simulation that finds no way but the present one."""
 
     def adapt_travel_time(self, *_: object) -> None: ...
@@ -271,7 +269,7 @@ def test_a_queue_to_turn_left_does_not_delay_who_drives_on(town: Network) -> Non
     def eta_s(route: tuple[str, str], *, left_mps: float) -> float:
         congestion = Congestion(town, lambda: [("c0c1_0", 12.0, THE_LIMIT), ("c0c1_1", left_mps, THE_LIMIT)] * 4)
         congestion.sample()
-        (option,) = Router(cast(LibSumo, NoRouter()), town, congestion, "ego").alternatives(route, 1, 0.0)
+        (option,) = Router(cast(LibSumo, _NoRouter()), town, congestion, "ego").alternatives(route, 1, 0.0)
         return option.eta_s
 
     on, left = ("c0c1", "c1c2"), ("c0c1", "c1n1")

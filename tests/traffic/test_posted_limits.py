@@ -1,7 +1,5 @@
 """Limits that hold at certain hours: read as the map writes them, and followed by the road, the car and its map."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -128,11 +126,7 @@ def test_a_span_past_midnight_belongs_to_the_day_it_begins_on() -> None:
     limits, _ = timed_limits("30 @ (Fr 22:00-06:00)")
     assert [
         bool(in_force(limits, at(day, clock))) for day, clock in [(5, "21:59"), (5, "23:00"), (6, "05:59")]
-    ] == [
-        False,
-        True,
-        True,
-    ]
+    ] == [False, True, True]
     assert not in_force(limits, at(5, "03:00")), "Thursday's night is not meant"
     assert not in_force(limits, at(6, "06:00"))
 
@@ -266,8 +260,7 @@ def school(sumo: None, variant: Variant) -> Iterator[Forked]:
         zone = f'<param key="hazard" value="school_zone"/><param key="maxspeed:conditional" value="{SCHOOL}"/>'
         edges.write_text(text[:end] + zone + text[end:])
         built, printed = sumo_programs.run(
-            "netconvert",
-            ["-n", folder / "grid.nod.xml", "-e", edges, "--proj.utm", "-o", folder / "grid.net.xml"],
+            "netconvert", ["-n", folder / "grid.nod.xml", "-e", edges, "--proj.utm", "-o", folder / "grid.net.xml"]
         )
         assert built, printed
         (folder / "grid.rou.xml").write_text("<routes/>")
@@ -350,8 +343,7 @@ def shut(sumo: None, variant: Variant) -> Iterator[Forked]:
             text = text[:end] + param + text[end:]
         edges.write_text(text)
         built, printed = sumo_programs.run(
-            "netconvert",
-            ["-n", folder / "grid.nod.xml", "-e", edges, "--proj.utm", "-o", folder / "grid.net.xml"],
+            "netconvert", ["-n", folder / "grid.nod.xml", "-e", edges, "--proj.utm", "-o", folder / "grid.net.xml"]
         )
         assert built, printed
 

@@ -1,7 +1,5 @@
 """Quickly made records are the frozen dataclasses themselves."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import FrozenInstanceError, fields, replace
 

@@ -1,7 +1,5 @@
 """Another day of the same demand: who travels differs by seed, what has a timetable does not."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Scenarios that cannot be driven are refused in a line, and none is written to."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace

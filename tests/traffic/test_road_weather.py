@@ -1,7 +1,5 @@
 """Weather on the road: what it does to grip, speed and gaps, of the ego and of everybody else."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Trips driven in turn: each leg leads on to the next, on every network."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Surrogate measures of safety: time to collision, DRAC and PET of the ego."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from contextlib import closing

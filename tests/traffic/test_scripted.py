@@ -1,7 +1,5 @@
 """The scripted road behaves as the protocol says, with the same driver."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from types import MappingProxyType
 

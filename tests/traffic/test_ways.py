@@ -1,7 +1,5 @@
 """Ways found without SUMO are the ways SUMO finds."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The ego in SUMO: what its state says, how its drive ends, and what its driver does."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from contextlib import closing

@@ -1,7 +1,5 @@
 """The view through the windshield: what is in it can be read back from it, and nothing else is in it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product

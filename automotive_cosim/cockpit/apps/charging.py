@@ -24,7 +24,7 @@ from automotive_cosim.contracts.text import say
 
 
 @dataclass(frozen=True, slots=True)
-class ChargingSchedule(AppData):
+class _ChargingSchedule(AppData):
     """The time by which the battery is charged."""
 
     timer: Timer = AT_SEVEN
@@ -35,7 +35,7 @@ class ChargingSchedule(AppData):
 
 def charging(state: State) -> tuple[Widget, ...]:
     """The battery, its charge limit and schedule, and stations nearby."""
-    signals, timer = state.signals, state.of(ChargingSchedule).timer
+    signals, timer = state.signals, state.of(_ChargingSchedule).timer
     level, cable = signals[ENERGY.LEVEL], say("cable in") if signals[ENERGY.CABLE] else say("no cable")
     far = say("{first}, {second}", first=distance(signals, signals[ENERGY.RANGE]), second=cable)
     charge = Label(key="charging.level", text=f"{level:.0f} %", description=say("Battery"), style=Type.HEADLINE)
@@ -52,7 +52,7 @@ def charging(state: State) -> tuple[Widget, ...]:
         say("Ready at a set time"),
         Icon.CLOCK,
         timer,
-        ChargingSchedule,
+        _ChargingSchedule,
         say("Charged by {shown}", shown=timer.shown),
         say("Charging starts immediately"),
     )
@@ -87,10 +87,10 @@ def schedule_charging(
     state: State, on: Annotated[bool, "Whether the schedule is on."], time: Annotated[str, CLOCK] = ""
 ) -> CallMade:
     """Have the battery charged by a time of day, or charge at once."""
-    timer = state.of(ChargingSchedule).timer
+    timer = state.of(_ChargingSchedule).timer
     minute = minute_of(time) if time else timer.minute
     return (
-        minute if isinstance(minute, Feedback) else Put(ChargingSchedule(replace(timer, on=on, minute=minute)), "")
+        minute if isinstance(minute, Feedback) else Put(_ChargingSchedule(replace(timer, on=on, minute=minute)), "")
     )
 
 
@@ -103,5 +103,5 @@ APP = App(
     about=say("Charge limit, times and stations nearby"),
     functions=(schedule_charging,),
     pages={"charging": AppPage(charging)},
-    starts=lambda state, rng: (ChargingSchedule(),),
+    starts=lambda state, rng: (_ChargingSchedule(),),
 )

@@ -42,7 +42,7 @@ PREPARING_MIN = 30
 
 
 @dataclass(frozen=True, slots=True)
-class ClimateSchedule(AppData):
+class _ClimateSchedule(AppData):
     """The time at which the cabin is ready."""
 
     timer: Timer = AT_SEVEN
@@ -234,13 +234,13 @@ def _rear(state: State) -> Block:
 
 
 def _schedule(state: State) -> Block:
-    timer = state.of(ClimateSchedule).timer
+    timer = state.of(_ClimateSchedule).timer
     prepare, time = schedule(
         "climate.schedule",
         say("Precondition the cabin"),
         Icon.CLIMATE,
         timer,
-        ClimateSchedule,
+        _ClimateSchedule,
         say("The cabin will be ready at {time}", time=timer.shown),
         say("The schedule is off"),
     )
@@ -262,10 +262,10 @@ def schedule_climate(
     state: State, on: Annotated[bool, "Whether the schedule is on."], time: Annotated[str, CLOCK] = ""
 ) -> CallMade:
     """Have the cabin prepared for a time of day, or not."""
-    timer = state.of(ClimateSchedule).timer
+    timer = state.of(_ClimateSchedule).timer
     minute = minute_of(time) if time else timer.minute
     return (
-        minute if isinstance(minute, Feedback) else Put(ClimateSchedule(replace(timer, on=on, minute=minute)), "")
+        minute if isinstance(minute, Feedback) else Put(_ClimateSchedule(replace(timer, on=on, minute=minute)), "")
     )
 
 
@@ -278,5 +278,5 @@ APP = App(
     functions=(schedule_climate,),
     pages={"climate": AppPage(climate, sided=True), "comfort": AppPage(comfort)},
     aliases={"hvac": ""},
-    starts=lambda state, rng: (ClimateSchedule(),),
+    starts=lambda state, rng: (_ClimateSchedule(),),
 )

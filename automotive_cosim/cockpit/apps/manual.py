@@ -102,7 +102,7 @@ FILM_S = 40.0
 
 
 @dataclass(frozen=True, slots=True)
-class ManualFilm(AppData):
+class _ManualFilm(AppData):
     """The topic whose video plays, and since when; None without."""
 
     topic: int | None = None
@@ -116,18 +116,18 @@ class ManualFilm(AppData):
         if self.topic is None:
             return
         if Restriction.NO_VIDEO in state.restrictions or state.time_s - self.since_s >= FILM_S:
-            state.keep(ManualFilm())
+            state.keep(_ManualFilm())
 
 
 def _film(topic: int, icon: Icon, state: State) -> Block:
     """The topic's video: its picture, its progress while it plays, and the button."""
-    film = state.of(ManualFilm)
+    film = state.of(_ManualFilm)
     if film.topic != topic:
         watch = Button(
             key="manual.film",
             text=say("Watch the video"),
             icon=Icon.PLAY,
-            on_tap=Put(ManualFilm(topic, state.time_s), say("The video plays")),
+            on_tap=Put(_ManualFilm(topic, state.time_s), say("The video plays")),
             locked=state.locked(Restriction.NO_VIDEO),
         )
         return stack(REST, (64, line((320, watch), REST)))
@@ -145,7 +145,7 @@ def _film(topic: int, icon: Icon, state: State) -> Block:
         key="manual.film",
         text=say("Stop the video"),
         icon=Icon.STOP,
-        on_tap=Put(ManualFilm(), say("The video is stopped")),
+        on_tap=Put(_ManualFilm(), say("The video is stopped")),
     )
     return stack((128, framed(shown, look="raised")), REST, (64, line((320, stop), REST)))
 
@@ -202,8 +202,8 @@ def play_manual_video(
 ) -> CallMade:
     """Play the video of a topic of the owner's manual, or stop it. Only while parked."""
     if not on:
-        return Put(ManualFilm(), "")
-    return locked(state, Restriction.NO_VIDEO) or Put(ManualFilm(NAMES.index(topic), state.time_s), "")
+        return Put(_ManualFilm(), "")
+    return locked(state, Restriction.NO_VIDEO) or Put(_ManualFilm(NAMES.index(topic), state.time_s), "")
 
 
 APP = App(
@@ -216,5 +216,5 @@ APP = App(
     functions=(play_manual_video,),
     pages={"manual": AppPage(manual)},
     picked={"manual": "0"},
-    starts=lambda state, rng: (ManualFilm(),),
+    starts=lambda state, rng: (_ManualFilm(),),
 )

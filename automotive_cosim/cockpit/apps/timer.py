@@ -25,14 +25,14 @@ STEP_MIN, MOST_MIN = 5, 240
 
 
 @dataclass(frozen=True, slots=True)
-class Countdown(AppData):
+class _Countdown(AppData):
     """The length that is set, and the countdown that runs."""
 
     minutes: int = 15
     begun_s: float | None = None
     """Simulation time at which it began; None while none runs."""
 
-    def longer(self, by_min: int) -> Countdown:
+    def longer(self, by_min: int) -> _Countdown:
         """Longer, or shorter, within the bounds; one that runs ends later, or earlier."""
         return replace(self, minutes=min(MOST_MIN, max(STEP_MIN, self.minutes + by_min)))
 
@@ -55,7 +55,7 @@ class Countdown(AppData):
 
 def _start_timer(state: State) -> Feedback:
     """Count down from the length that is set."""
-    now = state.of(Countdown)
+    now = state.of(_Countdown)
     return state.change(
         replace(now, begun_s=state.time_s), say("the timer runs for {minutes} minutes", minutes=now.minutes)
     )
@@ -66,7 +66,7 @@ START_TIMER = SimpleCommand(_start_timer, ("timer.running",))
 
 def _stop_timer(state: State) -> Feedback:
     """Stop the countdown."""
-    return state.change(replace(state.of(Countdown), begun_s=None), say("The timer is stopped"))
+    return state.change(replace(state.of(_Countdown), begun_s=None), say("The timer is stopped"))
 
 
 STOP_TIMER = SimpleCommand(_stop_timer, ("timer.running",))
@@ -77,11 +77,11 @@ LENGTHS_MIN = (5, 10, 15, 20, 30, 60, 120)
 
 def timer(state: State) -> tuple[Widget, ...]:
     """While it runs, another length makes it end earlier or later."""
-    now = state.of(Countdown)
+    now = state.of(_Countdown)
     runs = now.begun_s is not None
     left_s = now.left_s(state.time_s)
 
-    def put(length: Countdown) -> Put:
+    def put(length: _Countdown) -> Put:
         return Put(length, say("{minutes} minutes are set", minutes=length.minutes))
 
     def step(key: str, words: str, icon: Icon, by_min: int, bound: int, why: str) -> Button:
@@ -139,7 +139,7 @@ def set_timer(
     state: State, minutes: Annotated[int, "Its length.", Ge(STEP_MIN), Le(MOST_MIN), MultipleOf(STEP_MIN)]
 ) -> CallMade:
     """Set the length of the timer; one that runs ends earlier or later."""
-    return Put(replace(state.of(Countdown), minutes=minutes), "")
+    return Put(replace(state.of(_Countdown), minutes=minutes), "")
 
 
 @offered
@@ -158,5 +158,5 @@ APP = App(
     preinstalled=False,
     functions=(set_timer, run_timer),
     pages={"timer": AppPage(timer, Room.ONE)},
-    starts=lambda state, rng: (Countdown(),),
+    starts=lambda state, rng: (_Countdown(),),
 )

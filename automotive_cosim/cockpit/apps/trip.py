@@ -73,7 +73,7 @@ class TripMeters(AppData):
 
 
 @dataclass(frozen=True, slots=True)
-class ResetTrip(Command):
+class _ResetTrip(Command):
     """Count distance and time from here."""
 
     meter: Literal["a", "b"] = "a"
@@ -118,7 +118,7 @@ def trip(state: State) -> tuple[Widget, ...]:
         )
         for key, name, value, icon in tiles
     )
-    reset = Button(key="trip.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=ResetTrip())
+    reset = Button(key="trip.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=_ResetTrip())
     other = Button(key="trip.other", text=say("Trip B"), icon=Icon.TRIP, on_tap=Show("trip_b"))
     whole = card(
         title(Icon.TRIP, say("Trip A"), "trip.title"),
@@ -141,7 +141,7 @@ def trip_b(state: State) -> tuple[Widget, ...]:
         fact("trip_b.time", say("Driving time"), minutes(took_s)),
         fact("trip_b.energy", say("Energy"), Quantity(f"{used_kwh:.1f} kWh")),
     )
-    reset = Button(key="trip_b.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=ResetTrip("b"))
+    reset = Button(key="trip_b.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=_ResetTrip("b"))
     back = Button(key="trip_b.back", text=say("Trip A"), icon=Icon.BACK, on_tap=Back())
     whole = card(
         title(Icon.TRIP, say("Trip B"), "trip_b.title"),
@@ -157,7 +157,7 @@ def trip_b(state: State) -> tuple[Widget, ...]:
 @offered
 def reset_trip(state: State, meter: Annotated[Literal["a", "b"], "Which trip meter."]) -> CallMade:
     """Reset a trip meter: count distance and time from here."""
-    return ResetTrip(meter)
+    return _ResetTrip(meter)
 
 
 APP = App(

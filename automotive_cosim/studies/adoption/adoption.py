@@ -74,8 +74,7 @@ class Assistant(Protocol):
         Args:
             car: SUMO's id of it.
             state: what it knows of itself and the road.
-            ways: gives its route, then others by the news, the quickest first.
-        """
+            ways: gives its route, then others by the news, the quickest first."""
         ...
 
 
@@ -257,20 +256,14 @@ def warmed_up(job: AdoptionJob) -> Forked:
 
 
 def drive(
-    job: AdoptionJob,
-    warm: Forked,
-    share: float,
-    assistant: Assistant | None = None,
-    *,
-    keeps: Path | None = None,
+    job: AdoptionJob, warm: Forked, share: float, assistant: Assistant | None = None, *, keeps: Path | None = None
 ) -> tuple[ShareLog, Mapping[str, CarTrip]]:
     """Drives a share: what its assistants did, and every car's trip by its id.
 
     Args:
         share: 0 to 1.
         assistant: that of the plan if left out.
-        keeps: the study's folder, to which the drives of equipped cars are written while they last.
-    """
+        keeps: the study's folder, to which the drives of equipped cars are written while they last."""
     with closing(warm.road()) as road:
         if not (keeps and share):
             return _Drive(job, road, assistant).go(share), road.call(town.trips_of)
@@ -309,8 +302,7 @@ def within(seconds: float, call: Callable[[], T]) -> T:
 
     Raises:
         UserError: it raised, or has not answered within this wall time; then it is left to itself.
-        CosimError: it raised that.
-    """
+        CosimError: it raised that."""
     answers: list[T] = []
     errors: list[BaseException] = []
 
@@ -386,8 +378,7 @@ class _Drive:
         """Advises every so often; the driver follows as his profile does.
 
         Between two looks a car has no cockpit, as reading it at every step costs more than all the rest; once its
-        driver was asked to slow down, it keeps it.
-        """
+        driver was asked to slow down, it keeps it."""
         name, road, every_s = car.car, self._road, self._plan.every_s
         rng = np.random.default_rng((self._job.seed, *name.encode()))
         follows = profile(self._plan.driver).compliance

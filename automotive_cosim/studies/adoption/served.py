@@ -39,8 +39,7 @@ def cars(folder: Path, name: str) -> Json:
 
     Raises:
         NotHereError: there is no such share.
-        UserError: the study is damaged.
-    """
+        UserError: the study is damaged."""
     if name not in dict(fleets_in(folder)):
         raise NotHereError(f"there are no cars of {name!r}")
     found = {

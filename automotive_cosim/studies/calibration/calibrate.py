@@ -60,8 +60,7 @@ def calibrate(
         UserError: the counts cannot be used.
         UserError: the target exists or another program is making it, or the demand has stops or persons.
         ScenarioError: SUMO refuses the scenario, or it has no demand.
-        SetupError: eclipse-sumo is not installed.
-    """
+        SetupError: eclipse-sumo is not installed."""
     with variant.new_folder(target) as draft:
         configuration = read_configuration(scenario.config)
         variant.check_demand(configuration)

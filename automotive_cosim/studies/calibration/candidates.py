@@ -128,8 +128,7 @@ class _Places:
         """When each place is left, (hours, places).
 
         Args:
-            first_left_s: when the first edge of each route is left, (hours, routes).
-        """
+            first_left_s: when the first edge of each route is left, (hours, routes)."""
         first, table = times.table(self.index)
         count = table.shape[1] - 1
         left_s = np.empty((clock.hours, len(self.edges)))
@@ -179,8 +178,7 @@ def passes(
     Args:
         routes: n routes; column ``hour * n + route`` stands for the departures of one in an hour.
         wanted: edge or turn, and hour -> row.
-        free_s: the same on empty roads, for the first edge.
-    """
+        free_s: the same on empty roads, for the first edge."""
     names = {name: number for number, name in enumerate(dict.fromkeys(name for name, _ in wanted))}
     row_of = np.full((len(names) + 1, clock.hours + 1), -1)
     for (name, hour), row in wanted.items():

@@ -60,8 +60,7 @@ class DrivenDemand:
     def full_turns(self, clock: CountedTime, free_s: Mapping[str, float]) -> dict[tuple[Movement, int], int]:
         """Turn and hour -> vehicles served, for the turns that served fewer than came.
 
-        Those whose next edge is just as slow are left out: the queue there began farther on.
-        """
+        Those whose next edge is just as slow are left out: the queue there began farther on."""
         lost_s: dict[tuple[Movement, int], list[float]] = defaultdict(list)
         left: Counter[tuple[Movement, int]] = Counter()
         for trip in self.trips:
@@ -103,8 +102,7 @@ def drive(config: str, options: Mapping[str, str], clock: CountedTime, scratch: 
     Raises:
         ScenarioError: SUMO refuses the scenario; the message is SUMO's.
         TrafficError: SUMO hung or was killed.
-        SetupError: eclipse-sumo is not installed.
-    """
+        SetupError: eclipse-sumo is not installed."""
     driven = scratch / "driven.xml"
     whole = dict(options) | {
         "begin": f"{clock.begin_s:g}",

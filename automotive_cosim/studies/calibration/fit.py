@@ -47,8 +47,7 @@ def fit(problem: CountedFlows, bounded_by: csr_array, bounds: Floats) -> Floats:
     """The flows, (n,), all above zero.
 
     Args:
-        bounded_by: (k, n), share of each flow that each of k bounds concerns.
-    """
+        bounded_by: (k, n), share of each flow that each of k bounds concerns."""
     from scipy.optimize import Bounds, minimize
     from scipy.sparse import vstack
 

@@ -39,8 +39,7 @@ def write_page(folder: Path) -> Path:
     Raises:
         ScenarioError: the folder has no ``calibration.json``.
         UserError: it cannot be written.
-        SetupError: matplotlib is not installed.
-    """
+        SetupError: matplotlib is not installed."""
     found = read_calibration(folder)
     several = [by_hour(found)] if len(found.hours) > 1 else []
     tables = [*several, table(found), rounds(found), *([times(found)] if found.times else [])]

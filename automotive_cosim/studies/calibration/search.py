@@ -101,8 +101,7 @@ def search(world: SearchWorld, given: DrivenDemand, per_h: float, rounds: int) -
     """Fits and drives, up to ``rounds`` times.
 
     Args:
-        per_h: its departures per hour.
-    """
+        per_h: its departures per hour."""
     clock = world.clock
     rng = np.random.default_rng(world.seed)
     trips = [trip for trip in given.trips if len(trip.edges) > 1]

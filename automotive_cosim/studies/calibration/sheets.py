@@ -69,8 +69,7 @@ def read_sheet(
 
     Raises:
         UserError: it cannot be read.
-        SetupError: it is a workbook, and calamine is not installed.
-    """
+        SetupError: it is a workbook, and calamine is not installed."""
     widest: Cells = ()
     for cells, has_commas in _tables(path):
         for number, line in enumerate(cells[:MOST_ABOVE]):

@@ -48,8 +48,7 @@ def day(warm: Forked, asked: Mapping[str, Reroute | SlowDown], seconds: float) -
 
     Raises:
         UserError: a route does not lead from edge to edge, or is not given.
-        TrafficError: the simulation failed.
-    """
+        TrafficError: the simulation failed."""
     with closing(warm.copy()) as copy:
         trips, wrong = copy.call(_drive, dict(asked), seconds)
     if wrong:

@@ -47,8 +47,7 @@ def divert(running: Running, old: Edges, new: Edges, share: float, seed: int) ->
         share: share of the cars, 0 to 1; a greater share contains those of every smaller one.
 
     Returns:
-        The cars that took it, and how many could have.
-    """
+        The cars that took it, and how many could have."""
     sumo, routes = running.sumo, {}
     for vehicle in sorted(set(sumo.vehicle_ids()) - {EGO}):
         ahead = tuple(sumo.route(vehicle)[sumo.route_index(vehicle) :])

@@ -42,8 +42,7 @@ CONTROLS = {"static": 0, "actuated": 3, "delay_based": 5}
 class Advice:
     """A share of the cars gets advice again and again: the route that is quickest by the traffic news.
 
-    Who has followed a piece of advice goes by advice from then on, and no longer by SUMO's rerouting device.
-    """
+    Who has followed a piece of advice goes by advice from then on, and no longer by SUMO's rerouting device."""
 
     kind: Literal["advice"] = "advice"
     share: Annotated[float, Ge(0), Le(1)]
@@ -168,8 +167,7 @@ def flow(running: Running, duration_s: float, every_s: float) -> tuple[FlowSumma
 
     Args:
         duration_s: how long, a multiple of the period.
-        every_s: the period, a multiple of the step.
-    """
+        every_s: the period, a multiple of the step."""
     summaries = [_summary(running, (), Counter())]
     for number in range(round(duration_s / every_s)):
         running.done = number * every_s, duration_s

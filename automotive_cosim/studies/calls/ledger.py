@@ -159,8 +159,7 @@ class Ledger:
     def queues_m(self) -> dict[str, float]:
         """The length of the vehicles that wait in each lane, wherever in it, with the gaps that they keep.
 
-        SUMO's own queue output counts from the end of the lane, so over the free road before a breakdown too.
-        """
+        SUMO's own queue output counts from the end of the lane, so over the free road before a breakdown too."""
         vehicle, lane_of = self._sumo.vehicle, self._sumo.lane_of
         found: dict[str, float] = {}
         for each in self._sumo.vehicle_ids():
@@ -187,8 +186,7 @@ def keep_ledger(running: Running, *, consumptions: bool = False, tracks: bool = 
 
     Args:
         consumptions: also of what every vehicle emits and consumes.
-        tracks: also of where the ego is.
-    """
+        tracks: also of where the ego is."""
     step_s = running.world.step_s
     running.watchers.append(Ledger(running.sumo, step_s, consumptions=consumptions, tracks=tracks))
 
@@ -260,8 +258,7 @@ def own_choice(running: Running) -> tuple[str, ...]:
     """The route that SUMO's rerouting device would take now, from the present edge.
 
     The ego takes it, so use a copy. The device routes by travel times averaged over its adaptation interval
-    (``World.prepare_copies``).
-    """
+    (``World.prepare_copies``)."""
     sumo = running.sumo
     sumo.reroute(EGO)
     return tuple(sumo.route(EGO)[sumo.route_index(EGO) :])

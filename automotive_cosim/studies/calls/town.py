@@ -109,8 +109,7 @@ def equip(running: Running, share: float, seed: int, driver: str) -> None:
     Args:
         share: 0 to 1.
         seed: of the draw, and of the drivers' reactions.
-        driver: name of the profile by which they react; else they drive as they would.
-    """
+        driver: name of the profile by which they react; else they drive as they would."""
     running.convoy.chooses = partial(_plan, running.watcher(Town), share, seed, driver)
 
 

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.studies.calibration.settings import CalibrationOptions
 
 if TYPE_CHECKING:
     from automotive_cosim.studies.calibration.result import Calibration
 
 
+@tells_json
 @takes(CalibrationOptions, but=("seed",))
 def calibrate_scenario(
     scenario: Annotated[
@@ -29,14 +30,13 @@ def calibrate_scenario(
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="SCENARIO_calibrated")] = None,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Fit a scenario's traffic to counts, and simulate until it matches them.
 
     Some sites are held out, to test the fit where nothing was counted. If the traffic gridlocks, the exit code is 1
-    and nothing is written.
-    """
+    and nothing is written."""
     from automotive_cosim.report.charts import require_plots
     from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.studies.calibration.calibrate import calibrate

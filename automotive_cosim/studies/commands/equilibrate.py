@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.errors import UserError
 from automotive_cosim.studies.equilibrium.settings import EquilibriumSettings, OptimumSettings
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.equilibrium.optimum import SystemOptimum
 
 
+@tells_json
 @takes(OptimumSettings)
 @takes(EquilibriumSettings, but=("seed",))
 def equilibrate_scenario(
     folder: Annotated[Path, typer.Argument(help="Folder of a scenario, or any .sumocfg.", show_default=False)],
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Give a scenario's drivers their user-equilibrium routes, found by repeated simulation.
 
-    Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
-    """
+    Prints the relative gap of every step, as measured from the trips driven, and keeps the best step."""
     from automotive_cosim.scenarios.variant import check_target
     from automotive_cosim.studies.equilibrium.equilibrium import AssignmentStep, equilibrate
     from automotive_cosim.studies.equilibrium.optimum import OptimumStep, compare
@@ -61,11 +61,7 @@ def equilibrate_scenario(
     best = min(found, key=lambda step: step.gap.relative)
     if as_json:
         print_json(
-            {
-                "out": str(target),
-                "kept": best.number,
-                "relative_gaps": [step.gap.relative for step in found],
-            }
+            {"out": str(target), "kept": best.number, "relative_gaps": [step.gap.relative for step in found]}
             | ({} if compared is None else compared.as_json() | {"optimum": str(optimum)})
         )
         return

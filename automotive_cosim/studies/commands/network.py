@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.cli.batches import ExecutorSettings, tell_notes
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json
+from automotive_cosim.cli.options import print_json, tells_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.studies.commands.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
@@ -21,17 +21,13 @@ IN_PYTHON = ("redraw", "step_s")
 """What only a plan of one's own sets."""
 
 
+@tells_json
 @takes(CongestionSettings, but=IN_PYTHON)
 @takes(ExecutorSettings)
-def congestion(
-    out: StudyFolder = None,
-    as_json: AsJson = False,
-    **settings: Any,
-) -> None:
+def congestion(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Measure the delay of a whole network before and after an intervention, in copies of the same traffic.
 
-    Rerun the command to resume a stopped study.
-    """
+    Rerun the command to resume a stopped study."""
     from automotive_cosim.studies.congestion.plan import CongestionPlan
     from automotive_cosim.studies.congestion.seed import CONGESTION
 
@@ -44,17 +40,13 @@ def congestion(
     _run(plan, CONGESTION, "seeds", out, settings, as_json=as_json, about=about)
 
 
+@tells_json
 @takes(DaysSettings, but=("lag",))
 @takes(ExecutorSettings)
-def days(
-    out: StudyFolder = None,
-    as_json: AsJson = False,
-    **settings: Any,
-) -> None:
+def days(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Advise a share of the drivers day after day until traffic settles, beside the user equilibrium.
 
-    Rerun the command to resume a stopped study.
-    """
+    Rerun the command to resume a stopped study."""
     from automotive_cosim.studies.days.days import DAYS, DaysPlan
 
     plan = filled(DaysPlan, settings)
@@ -63,17 +55,13 @@ def days(
     _run(plan, DAYS, "shares and seeds", out, settings, as_json=as_json)
 
 
+@tells_json
 @takes(AdoptionSettings, but=("emissions", "driver", "every_s", *IN_PYTHON))
 @takes(ExecutorSettings)
-def adoption(
-    out: StudyFolder = None,
-    as_json: AsJson = False,
-    **settings: Any,
-) -> None:
+def adoption(out: StudyFolder = None, as_json: bool = False, **settings: Any) -> None:
     """Put an assistant into a growing share of the cars of one traffic: what it does to them and to all others.
 
-    Rerun the command to resume a stopped study.
-    """
+    Rerun the command to resume a stopped study."""
     from automotive_cosim.studies.adoption.adoption import ADOPTION, AdoptionPlan
 
     plan = filled(AdoptionPlan, settings)

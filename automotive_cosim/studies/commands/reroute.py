@@ -10,14 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import (
-    ExecutorSettings,
-    numbers_in,
-    tell_notes,
-    words,
-)
+from automotive_cosim.cli.batches import ExecutorSettings, numbers_in, tell_notes, words
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, print_json, reads_results
+from automotive_cosim.cli.options import print_json, reads_results, tells_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
@@ -25,11 +20,12 @@ from automotive_cosim.studies.commands.shared import StudyFolder, driven, folder
 from automotive_cosim.studies.settings import RerouteSettings
 
 
+@tells_json
 @reads_results
 def compare(
     first: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)],
     second: Annotated[Path, typer.Argument(help="The same of another run.", show_default=False)],
-    as_json: AsJson = False,
+    as_json: bool = False,
 ) -> None:
     """Compare two runs of one study, as of two versions; exit code 1 if their rows differ."""
     from automotive_cosim.cli.console import Console
@@ -62,6 +58,7 @@ IN_PYTHON = ("redraw", "limit_s", "agent_steps", "every_s", "placebo_every", "ar
 """What only a ``StudyPlan`` of one's own sets."""
 
 
+@tells_json
 @takes(RerouteSettings, but=("scenario", "warm_up_s", *IN_PYTHON))
 @takes(ExecutorSettings)
 def reroute(
@@ -83,13 +80,12 @@ def reroute(
     ] = None,
     out: StudyFolder = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
-    as_json: AsJson = False,
+    as_json: bool = False,
     **settings: Any,
 ) -> None:
     """Fork the running traffic at every decision to reroute and drive both routes.
 
-    Rerun the command to resume a stopped study.
-    """
+    Rerun the command to resume a stopped study."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.scenarios import shipped
     from automotive_cosim.studies.reroute.networks import folder_name

@@ -100,8 +100,7 @@ def _lost(study: CongestionStudy) -> Drawing | None:
 def _fundamental(study: CongestionStudy, network: Network) -> Drawing | None:
     """Flow against density of the whole network in five minutes (Geroliminis and Daganzo 2008).
 
-    Both by Edie's definitions (1963): total distance, and total time, by the length of all lanes and the time.
-    """
+    Both by Edie's definitions (1963): total distance, and total time, by the length of all lanes and the time."""
     lanes_m = sum(edge.length_m * len(edge.lane_ids) for edge in network.edges.values())
     named = [each for each in all_interventions(study) if each[0] <= DRAWN]
     if not any(row.outcomes for row in study.rows):

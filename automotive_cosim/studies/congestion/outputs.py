@@ -39,8 +39,7 @@ def read_flows(
     Args:
         begin_s: simulation time from which ``from_s`` counts.
         slowed: for every interval, edges with a lower limit than usual: its share of the usual one, against which
-            time is lost there, and the time of vehicles at their stops, which is not lost.
-    """
+            time is lost there, and the time of vehicles at their stops, which is not lost."""
     from_s = 0.0
     for event, element in ET.iterparse(folder / EDGE_FLOWS, ("start", "end")):
         if element.tag == "interval" and event == "start":

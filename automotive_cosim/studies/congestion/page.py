@@ -101,8 +101,7 @@ def warnings(study: CongestionStudy) -> list[str]:
 def _dry_from_s(study: CongestionStudy) -> float | None:
     """When departures without an intervention fell for good below a tenth of their mean rate; None if they did not.
 
-    At least five minutes must be left, as figures are told in five minutes.
-    """
+    At least five minutes must be left, as figures are told in five minutes."""
     outcomes = [outcome.states for _, outcome in study.outcomes("")]
     if not outcomes:
         return None

@@ -16,14 +16,7 @@ from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import alone, doing, warming_up
 from automotive_cosim.studies.calls.flow import FlowSummary, flow, take
 from automotive_cosim.studies.calls.ledger import keep_ledger
-from automotive_cosim.studies.congestion.outputs import (
-    EDGES,
-    EdgeFlow,
-    cells,
-    class_in,
-    read_flows,
-    write_edges,
-)
+from automotive_cosim.studies.congestion.outputs import EDGES, EdgeFlow, cells, class_in, read_flows, write_edges
 from automotive_cosim.studies.congestion.plan import (
     EPOCH_S,
     INTERVAL_S,

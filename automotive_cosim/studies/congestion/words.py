@@ -45,8 +45,7 @@ def name_of(text: str) -> str:
     """An intervention or incident as its line says it, in words; two that differ have different names.
 
     Args:
-        text: a line that a plan has checked, as ``closure edge=c2c3``; empty for no intervention.
-    """
+        text: a line that a plan has checked, as ``closure edge=c2c3``; empty for no intervention."""
     kind, *pairs = text.split() or [""]
     phrase = PHRASES.get(kind)
     if phrase is None:

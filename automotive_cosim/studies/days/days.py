@@ -66,7 +66,7 @@ class AdvisedDay:
     """The route of each trip that is quickest by the memory; without those that have no other route."""
 
 
-class Adviser(Protocol):
+class _Adviser(Protocol):
     """Chooses routes; one is made for every share and seed, with the seed as its only argument."""
 
     def advise(self, day: AdvisedDay) -> Routes:
@@ -74,7 +74,7 @@ class Adviser(Protocol):
         ...
 
 
-class Quickest:
+class _Quickest:
     """Advises the route that is quickest by the memory, if that is noticed."""
 
     def advise(self, day: AdvisedDay) -> Routes:
@@ -87,7 +87,7 @@ class Quickest:
         }
 
 
-class OwnAdviser:
+class _OwnAdviser:
     """A class of the user's behind this protocol; its faults are reported in a line."""
 
     def __init__(self, spec: str, seed: int, network: Network) -> None:
@@ -104,7 +104,7 @@ class OwnAdviser:
             raise UserError(f"adviser {spec!r} lacks advise(day); an adviser is a class with it")
         try:
             with aside():
-                self._adviser: Adviser = made(seed)
+                self._adviser: _Adviser = made(seed)
         except FAULTS as error:
             raise UserError(f"adviser {spec!r}: {made.__name__}(seed) raised {told(error)}") from error
 
@@ -162,7 +162,7 @@ class DaysPlan(DaysSettings):
         configuration = read_configuration(self.scene().config)
         variant.check_demand(configuration)
         if self.adviser:
-            OwnAdviser(self.adviser, self.seeds[0], read_network(configuration.net))
+            _OwnAdviser(self.adviser, self.seeds[0], read_network(configuration.net))
 
     def scene(self) -> Scenario:
         """The scenario as it is driven on the first day: everybody keeps the route that they set out on."""
@@ -266,8 +266,7 @@ class DaysRow(JobRow):
         """The mean of a figure over the last ``WEEK`` days; None if it is not known.
 
         Of the user equilibrium, that of the day with the smallest gap, and of the system optimum, that of the day
-        with the least mean time, as the searches do not approach them evenly.
-        """
+        with the least mean time, as the searches do not approach them evenly."""
         days = self.days[-WEEK:]
         if self.share is None and self.days:
             days = (min(self.days, key=lambda day: day.mean_s if self.optimum else day.relative_gap),)
@@ -304,7 +303,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
         now = _first(configuration, scenario, types, observe_s, job.seed, scratch)
         advised = {trip.id for trip in now.trips if job.share is None or _draw(job.seed, trip.id) < job.share}
         is_own = bool(plan.adviser) and job.share is not None
-        adviser: Adviser = OwnAdviser(plan.adviser, job.seed, network) if is_own else Quickest()
+        adviser: _Adviser = _OwnAdviser(plan.adviser, job.seed, network) if is_own else _Quickest()
         memories: list[EdgeTimes] = []
         calm_s: dict[str, float] = {}
         means_s: list[float] = []

@@ -68,10 +68,7 @@ class Assigned:
 
 
 def equilibrate(
-    folder: Path,
-    target: Path,
-    options: EquilibriumSettings,
-    tell: Callable[[AssignmentStep], None],
+    folder: Path, target: Path, options: EquilibriumSettings, tell: Callable[[AssignmentStep], None]
 ) -> tuple[AssignmentStep, ...]:
     """Writes a copy of a scenario whose demand is the best step's; returns all steps.
 
@@ -82,8 +79,7 @@ def equilibrate(
     Raises:
         UserError: the target exists, or the demand has stops or persons.
         ScenarioError: it is no scenario, or SUMO refuses it.
-        SetupError: eclipse-sumo is not installed.
-    """
+        SetupError: eclipse-sumo is not installed."""
     with variant.new_folder(target) as draft:
         scenario = opened(folder, options)
         configuration = read_configuration(scenario.config)

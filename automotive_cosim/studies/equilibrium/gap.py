@@ -100,8 +100,7 @@ class EdgeTimes:
         """Averages what the trips took.
 
         Args:
-            free_s: time of every edge at its limit.
-        """
+            free_s: time of every edge at its limit."""
         sums: dict[tuple[str, int], list[float]] = defaultdict(lambda: [0.0, 0.0])
         for trip in trips:
             for edge, entered_s, left_s in zip(trip.edges[1:], trip.exits_s, trip.exits_s[1:], strict=False):
@@ -121,8 +120,7 @@ class EdgeTimes:
         """The first interval of all, and the times of some edges in it and the following ones.
 
         Args:
-            edges: edge -> row of an array, (edges, intervals + 1), whose last column is the free time.
-        """
+            edges: edge -> row of an array, (edges, intervals + 1), whose last column is the free time."""
         intervals = [interval for _, interval in self._means_s] or [0]
         first, count = min(intervals), max(intervals) + 1 - min(intervals)
         free_s = np.array([self._free_s[edge] for edge in edges])
@@ -184,8 +182,7 @@ class EdgeTimes:
 class Driven:
     """A run of SUMO without the ego, its trips, and what would have been better for each.
 
-    Better is what costs less: the driver's own time, unless the run was asked for another cost.
-    """
+    Better is what costs less: the driver's own time, unless the run was asked for another cost."""
 
     trips: tuple[DrivenTrip, ...]
     """All trips, in the order of their departures."""
@@ -206,8 +203,7 @@ def measure(scenario: Scenario, *, observe_s: float = 3600.0, seed: int = 0) -> 
     Raises:
         ScenarioError: SUMO refuses the scenario; the message is SUMO's.
         SetupError: eclipse-sumo is not installed.
-        TrafficError: SUMO hung or was killed.
-    """
+        TrafficError: SUMO hung or was killed."""
     configuration = read_configuration(scenario.config)
     return drive(configuration, scenario, observe_s, seed).gap
 
@@ -223,8 +219,7 @@ def drive(
 
     Args:
         observe_s: how long after the warm-up departures count.
-        cost: what edges cost a driver, from their times.
-    """
+        cost: what edges cost a driver, from their times."""
     first_s = configuration.begin_s + scenario.sumo.warm_up_s
     last_s = first_s + observe_s
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-gap-") as folder:
@@ -303,8 +298,7 @@ def run(configuration: Configuration, scenario: Scenario, observe_s: float, seed
     """Runs SUMO on a demand until ``TAIL_S`` after the time observed; raises like ``measure``.
 
     Args:
-        observe_s: how long after the warm-up departures count.
-    """
+        observe_s: how long after the warm-up departures count."""
     sumo = replace(scenario.sumo, step_length_s=1.0)
     copies = copied(configuration, scratch)
     options = run_options(copies, Setup(replace(scenario, sumo=sumo), seed))

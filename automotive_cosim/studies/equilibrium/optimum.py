@@ -120,8 +120,7 @@ def compare(
     Raises:
         UserError: the target exists.
         ScenarioError: SUMO refuses the scenario.
-        SetupError: eclipse-sumo or scipy is not installed.
-    """
+        SetupError: eclipse-sumo or scipy is not installed."""
     if find_spec("scipy") is None:
         raise SetupError(f"a system optimum requires scipy: {install_hint('reports')}")
     with variant.new_folder(target) as draft:

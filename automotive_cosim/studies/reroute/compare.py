@@ -55,8 +55,7 @@ def others(stay: Future, other: Future, group: Sequence[str]) -> OthersTotals:
     Args:
         stay: the future in which the ego keeps its route.
         other: the future in which it does not.
-        group: the vehicles that were on the road, or due and waiting to enter it.
-    """
+        group: the vehicles that were on the road, or due and waiting to enter it."""
     until_s = min(stay.settled.time_s, other.settled.time_s)
     times = [
         [min(future.settled.arrivals_s.get(vehicle, until_s), until_s) for vehicle in group]

@@ -38,8 +38,7 @@ def drive_on(
         advance: drives on by that many seconds; None uses the traffic's own.
 
     Returns:
-        The greatest expected delay at any check.
-    """
+        The greatest expected delay at any check."""
     advance = advance or traffic.advance
     begun_s = traffic.state.time_s
     due_s = begun_s + LOOK_S
@@ -71,8 +70,7 @@ def decided(agent: str, job: StudyJob, traffic: Traffic) -> None:
 
     Raises:
         UserError: no such agent or model.
-        ModelError: its model could not be reached.
-    """
+        ModelError: its model could not be reached."""
     player = make_agent(*named(agent), AgentSettings(seed=job.seed))
     world = _coupled(job, traffic)
     drive = [world.moment, *world.advance(ALTERNATIVES_FROM_S + TICK_S)]

@@ -91,8 +91,7 @@ def rerouted(study: Study) -> list[tuple[tuple[str, str, str], list[SpreadOf]]]:
 def together_by_share(study: Study) -> dict[tuple[float, float], list[tuple[int, list[Together]]]]:
     """The draws of each decision with the seed of its traffic, by share of rerouting cars and share sent along.
 
-    A decision of which any draw of any share does not count is left out of all, so that the shares stay paired.
-    """
+    A decision of which any draw of any share does not count is left out of all, so that the shares stay paired."""
     found: dict[tuple[float, float], list[tuple[int, list[Together]]]] = {}
     for point in study.decisions:
         every = point.decision.together

@@ -28,8 +28,7 @@ def spread(pairs: Sequence[tuple[Future, Future]], group: Sequence[str], at_s: f
 
     Args:
         pairs: for every draw, the future in which the ego keeps its route, and the one in which it does not.
-        at_s: instant of the fork.
-    """
+        at_s: instant of the fork."""
     left = [_times_left(pair, group, at_s) for pair in pairs]
     stay_s, other_s = (np.mean([times[which] for times in left], axis=0) for which in (0, 1))
     gains_s = stay_s - other_s
@@ -67,8 +66,7 @@ def gini(values: Numbers) -> float:
 def _times_left(pair: tuple[Future, Future], group: Sequence[str], at_s: float) -> tuple[Numbers, Numbers]:
     """Seconds from the fork to the arrival of the ego and of each other vehicle, in both futures.
 
-    A vehicle that has not arrived when the earlier future ends counts up to then, as in ``compare.others``.
-    """
+    A vehicle that has not arrived when the earlier future ends counts up to then, as in ``compare.others``."""
     until_s = min(future.settled.time_s for future in pair)
     stay_s, other_s = (
         np.array([future.last.time_s, *(min(future.settled.arrivals_s.get(v, until_s), until_s) for v in group)])

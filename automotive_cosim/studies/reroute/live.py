@@ -39,8 +39,7 @@ class LiveTrip:
 
         Args:
             traffic: its ego, which has departed.
-            folder: the study's; None if nobody can watch.
-        """
+            folder: the study's; None if nobody can watch."""
         self._job = job
         self._traffic = traffic
         self._folder = folder

@@ -139,8 +139,7 @@ def write_study(folder: Path) -> Path:
 
     Raises:
         UserError: the folder is not a study's, has no decision that counts, or cannot be written.
-        SetupError: the extra ``reports`` is not installed.
-    """
+        SetupError: the extra ``reports`` is not installed."""
     study = Study.read(folder)
     if not study.rows:
         raise UserError(f"{folder} has no drives yet; rerun its `study` command to resume")
@@ -182,8 +181,7 @@ def answer(study: Study) -> str:
     """What the study found, in a sentence: the policy to follow that gains most, and what it gains at every share
     of rerouting cars.
 
-    ``best`` knows all futures, so nobody can follow it: it is told only where nothing else was compared.
-    """
+    ``best`` knows all futures, so nobody can follow it: it is told only where nothing else was compared."""
     found: dict[str, list[tuple[float, SeedMean, list[PolicyChoice]]]] = {}
     idle: dict[str, None] = {}
     first_s = study.plan.ages_s[0]

@@ -30,8 +30,7 @@ def together(
         share: share of the eligible cars that were rerouted with the ego.
         pair: the future in which everyone keeps their route, and the one in which they do not.
         group: the other vehicles that were present.
-        excluded: why the future does not count.
-    """
+        excluded: why the future does not count."""
     stay, other = pair
     until_s = min(future.settled.time_s for future in pair)
     went = set(took)
@@ -118,8 +117,7 @@ def compared(point: Point, stay: Future, history: Sequence[TrafficSummary]) -> D
 
     Args:
         stay: the drive itself, in which the ego keeps its route.
-        history: measurements of the traffic up to the ego's departure.
-    """
+        history: measurements of the traffic up to the ego's departure."""
     branches = [stay if branch is None else branch for branch in point.branches]
     drawn = [Drawn(0, stay, branches), *point.replicates]
     scored = drawn[: point.decision.planned_draws or len(drawn)]
@@ -187,8 +185,7 @@ def exclusion(pairs: Sequence[tuple[Future, Future]], summaries: Sequence[Traffi
 
     Args:
         pairs: each future with the one in which the ego keeps its route, which comes first.
-        summaries: measurements of the traffic up to their fork.
-    """
+        summaries: measurements of the traffic up to their fork."""
     futures = [future for pair in pairs for future in pair]
     if not all(future.has_arrived for future in futures):
         ends = sorted({str(future.last.end) for future in futures if not future.has_arrived})
@@ -215,8 +212,7 @@ def branched(stay: Future, other: Future, group: Sequence[str]) -> Branch:
     """A future compared with the one in which the ego keeps its route.
 
     Args:
-        group: the other vehicles that were there at the fork.
-    """
+        group: the other vehicles that were there at the fork."""
     return Branch(
         gains=compare.gains(stay, other),
         totals=other.totals(),

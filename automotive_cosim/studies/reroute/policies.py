@@ -69,8 +69,7 @@ class Policy:
         Args:
             stay_s: expected travel time on the present route; None if the news does not have it.
             delay_s: how much more of it than on empty roads.
-            offered_s: expected travel time on the quickest other route; None without one.
-        """
+            offered_s: expected travel time on the quickest other route; None without one."""
         if self.rule is PolicyRule.ALWAYS:
             return True
         if stay_s is None or offered_s is None or offered_s >= stay_s:
@@ -119,8 +118,7 @@ def chosen(policy: Policy, decision: Decision, age_s: float, compliance: float =
         compliance: how probably the driver follows the advice; hindsight needs no driver.
 
     Returns:
-        The number of the branch; None for keeping the route.
-    """
+        The number of the branch; None for keeping the route."""
     news = next(each for each in decision.news if each.age_s == age_s)
     match policy.rule:
         case PolicyRule.NEVER:
@@ -150,8 +148,7 @@ def hindsight(decision: Decision) -> tuple[int | None, ...]:
     """The best choice for each draw, made by all other draws, including those that are in no mean.
 
     If the same draw chose and scored, the best of several equal futures would gain by luck. A single draw has no
-    others, so it chooses for itself.
-    """
+    others, so it chooses for itself."""
     if decision.draws == 1:
         return (best(decision),)
     return tuple(best(decision, without=draw) for draw in range(decision.draws))
@@ -161,8 +158,7 @@ def best(decision: Decision, without: int | None = None) -> int | None:
     """The branch with the shortest mean travel time; None if keeping the route is as short.
 
     Args:
-        without: a draw to ignore.
-    """
+        without: a draw to ignore."""
     draws = [draw for draw in range(decision.draws) if draw != without]
     times = {
         number: fmean(decision.gain(draw, number).time_s for draw in draws)

@@ -34,8 +34,7 @@ class Totals:
         So a gain of time is the sum of two savings: time not lost (congestion avoided), and a quicker way. The
         way's own time is what Jahn, Möhring, Schulz and Stier-Moses call its normal length (System-Optimal
         Routing of Traffic Flows with User Constraints in Networks with Congestion, Operations Research 53, 2005):
-        its time on empty roads, which the traffic does not change.
-        """
+        its time on empty roads, which the traffic does not change."""
         return None if self.lost_s is None else round(self.time_s - self.lost_s, 3)
 
     @classmethod
@@ -86,8 +85,7 @@ NOBODY = OthersTotals(count=0, gain_s=0.0, changed=0, unfinished_stay=0, unfinis
 class FleetClass(Consumption):
     """What the vehicles of one emission class save that were present and arrived in both futures.
 
-    The ego is a class of its own, ``ego: `` and its name.
-    """
+    The ego is a class of its own, ``ego: `` and its name."""
 
     count: int
 
@@ -289,8 +287,7 @@ class Decision:
         """The draws over which means are taken.
 
         Draws that were added until the sign of the gain was clear choose and tell the sign, but are in no mean:
-        stopping there would bias it away from zero.
-        """
+        stopping there would bias it away from zero."""
         return range(self.planned_draws or self.draws)
 
     def drawn(self, draw: int, branch: int | None) -> Branch | None:

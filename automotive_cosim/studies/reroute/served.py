@@ -44,8 +44,7 @@ def decision_map(folder: Path, name: str) -> Json:
 
     Raises:
         NotHereError: there is no such decision, or its row does not hold the routes.
-        UserError: the study or its scenario cannot be read.
-    """
+        UserError: the study or its scenario cannot be read."""
     study = Study.read(folder)
     point = next((each for each in all_decisions(study.rows) if each.id == name), None)
     if point is None or not point.decision.ways:

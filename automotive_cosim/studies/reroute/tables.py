@@ -319,8 +319,7 @@ def errors_table(unit: str, failed: Sequence[JobRow]) -> Table:
 def outcomes(chosen: Sequence[PolicyChoice], floor: Noise) -> tuple[float, float, float]:
     """Numbers of choices that saved time, made no difference, and lost time.
 
-    With several draws they are sums of shares of draws; with one, the noise floor separates them.
-    """
+    With several draws they are sums of shares of draws; with one, the noise floor separates them."""
     wins = sum(each.gain.time_s > floor.time_s if each.won is None else each.won for each in chosen)
     losses = sum(each.gain.time_s < -floor.time_s if each.lost is None else each.lost for each in chosen)
     return wins, len(chosen) - wins - losses, losses

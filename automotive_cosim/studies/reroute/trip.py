@@ -69,8 +69,7 @@ def run_drive(
 
     Raises:
         TrafficError: the simulation failed.
-        UserError: the scenario or an agent cannot be used.
-    """
+        UserError: the scenario or an agent cannot be used."""
     row = job.planned()
     if job.trip.from_edge == job.trip.to_edge and not job.trip.via:
         return replace(

@@ -38,8 +38,7 @@ def whole_drives(
 
     Args:
         fresh: how copies get fresh random numbers; None without replicates.
-        history: measurements of the traffic so far.
-    """
+        history: measurements of the traffic so far."""
     policies = [parse_policy(text) for text in job.plan.policies]
     followed = [each for each in policies if each.rule not in (PolicyRule.NEVER, PolicyRule.BEST)]
     draws = 1 + job.plan.draws.start

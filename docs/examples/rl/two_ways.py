@@ -140,8 +140,7 @@ def driven(made, planned_s, chosen):
 def cost_of(trips, chosen):
     """What a trip cost all: its time, and, over the bridge, the time from its passing to the end of the queue.
 
-    That is what all behind wait for it together.
-    """
+    That is what all behind wait for it together."""
     cost = {car: trip.until_s - trip.planned_s for car, trip in trips.items()}
     over = sorted((trips[car].until_s, car) for car, (_, act) in chosen.items() if act != 1)
     free_s = min(cost[car] for _, car in over) if over else 0.0

@@ -1,7 +1,5 @@
 """Calibrations of the grid: what the folder holds, what is refused, and a demand that cannot flow."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections import Counter

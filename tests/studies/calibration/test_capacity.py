@@ -1,7 +1,5 @@
 """What roads and signals carry, by hand."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

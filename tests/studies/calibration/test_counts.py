@@ -1,7 +1,5 @@
 """Hourly counts: what is read, and what is refused in one line."""
 
-from __future__ import annotations
-
 import gzip
 import zipfile
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """The fit by hand: nearest to the prior, within bounds, no route given up."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

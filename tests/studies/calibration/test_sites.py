@@ -1,7 +1,5 @@
 """Where the sites are, on the grid, and which counts are doubted."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import pytest

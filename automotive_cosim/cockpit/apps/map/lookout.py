@@ -244,8 +244,7 @@ def _jam(state: State, driving: DrivingState, queue: tuple[float, float] | None)
     Slow traffic is reported road by road, from the start of the first slow one; of some queues the tail is known.
 
     Args:
-        queue: how far the next reported tail is, and where its road begins; in metres from the car.
-    """
+        queue: how far the next reported tail is, and where its road begins; in metres from the car."""
     ahead_m = [] if queue is None else [queue[0]]
     news = state.news
     if news is not None and news.ahead.jam_distance_m is not None:

@@ -98,8 +98,7 @@ def incidents(state: State, *, besides_jam: bool = False) -> tuple[tuple[Inciden
     """Incidents last reported by live traffic: kind, and where a driver meets them.
 
     Args:
-        besides_jam: whether to omit jams on the route, of which the next has a mark of its own.
-    """
+        besides_jam: whether to omit jams on the route, of which the next has a mark of its own."""
     if state.heard is None:
         return ()
     ahead = state.heard.driving.ahead

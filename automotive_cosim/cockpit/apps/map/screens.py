@@ -224,8 +224,7 @@ def _chargers(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...])
 def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Widget, ...]:
     """Marks of jam, destination and incidents, as far as they are visible.
 
-    A mark that would cover the car stands before or behind it on its road.
-    """
+    A mark that would cover the car stands before or behind it on its road."""
     known: list[tuple[str, str, Icon, Spot | None]] = [
         ("jam", say("Traffic jam starts here"), Icon.JAM, jam(state)),
         ("end", say("The route ends here"), Icon.GOAL, goal(state)),

@@ -146,12 +146,7 @@ def _own(who: str, state: State) -> Iterator[BlockItem]:
 
 def _send(message: SendReply, lacking: str) -> Button:
     return Button(
-        key="figure.send",
-        text=say("Send"),
-        icon=Icon.REPLY,
-        look=Look.ACCENT,
-        on_tap=message,
-        disabled=lacking,
+        key="figure.send", text=say("Send"), icon=Icon.REPLY, look=Look.ACCENT, on_tap=message, disabled=lacking
     )
 
 
