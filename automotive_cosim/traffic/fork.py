@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import threading
 from collections import Counter, OrderedDict, deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -33,7 +33,7 @@ from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.keeper import started
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
-from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
+from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess, Turns
 from automotive_cosim.traffic.shadow import Passed, by_step
 from automotive_cosim.traffic.steering import KEEPS_ROUTE
 from automotive_cosim.traffic.sumo import EGO
@@ -224,6 +224,8 @@ class RemoteRoad(_Remote):
         """Whether it goes on without an equipped car, until it is closed."""
         self._cars: WeakValueDictionary[str, RemoteTraffic] = WeakValueDictionary()
         """Who drops a drive without closing it ends it as well."""
+        self.away: dict[str, list[Packed]] = {}
+        """Cars whose drives another process has, and what each has passed that it has not been told."""
         self._entered: list[RemoteTraffic] = []
         self._started_s: float | None = None
         self.asked: list[tuple[float, str, RoadRequest]] = []
@@ -275,9 +277,9 @@ class RemoteRoad(_Remote):
 
     def leave(self, car: str) -> None:
         """A cockpit is no longer used; without one, the process ends, unless it is held."""
-        if self._cars.pop(car, None) is None:
+        if self._cars.pop(car, None) is None and self.away.pop(car, None) is None:
             return
-        if (not self._cars and not self.is_held) or self._is_busy:
+        if not (self._cars or self.away or self.is_held) or self._is_busy:
             self.close()
         elif not self._process.is_broken:
             self._process.call("forget", car)
@@ -285,7 +287,7 @@ class RemoteRoad(_Remote):
     @property
     def is_shared(self) -> bool:
         """Whether several equipped cars drive on it."""
-        return len(self._cars) > 1
+        return len(self._cars) + len(self.away) > 1
 
     def ask(self, car: str, state: DrivingState, request: RoadRequest) -> Answer:
         """Makes a request of a car."""
@@ -297,8 +299,7 @@ class RemoteRoad(_Remote):
     def start(self, duration_s: float) -> None:
         """Starts to run in the background; the next call must be ``run`` of that duration."""
         if self._started_s is None and not self._to_hear():
-            self._process.send("advance", duration_s, tuple(self._cars))
-            self._started_s = duration_s
+            self._send(duration_s)
 
     def run(self, duration_s: float) -> None:
         """Lets the traffic run, and tells every car what it has passed.
@@ -308,16 +309,30 @@ class RemoteRoad(_Remote):
         """
         for part_s in self._parts(duration_s):
             if self._started_s is None:
-                self._process.send("advance", part_s, tuple(self._cars))
-                self._started_s = part_s
+                self._send(part_s)
             assert part_s == self._started_s, "another advance was started"
             self._started_s = None
             passed, entered, self.time_s = self._process.receive()
-            for car, each in passed.items():
-                if (traffic := self._cars.get(car)) is not None:
-                    traffic.see(unpack_advance(each))
+            self.tell({car: (each,) for car, each in passed.items()})
             if self._original is None:
                 self._entered += [self.take(car, state) for car, state in entered.items()]
+
+    def _send(self, duration_s: float) -> None:
+        self._process.send("advance", duration_s, (*self._cars, *self.away))
+        self._started_s = duration_s
+
+    def take_turns(self) -> None:
+        """From here on, what this process and copies of it ask the road is asked one after the other."""
+        self._process.turns = Turns()
+
+    def tell(self, passed: Mapping[str, Iterable[Packed]]) -> None:
+        """Tells cars what they have passed."""
+        for car, parts in passed.items():
+            if car in self.away:
+                self.away[car] += parts
+            elif (traffic := self._cars.get(car)) is not None:
+                for each in parts:
+                    traffic.see(unpack_advance(each))
 
     def reach(self, time_s: float) -> None:
         """Lets the traffic run to a simulation time, unless it has."""
