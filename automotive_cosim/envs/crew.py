@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import gc
 import os
+import pickle
 import signal
 import socket
 import traceback
 import weakref
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from math import inf
@@ -123,7 +124,7 @@ class _CrewElsewhere:
     def enter(
         self, car: str, spec: DriveSpec, script: DriveScript, traffic: RemoteTraffic
     ) -> tuple[Any, dict[str, Any]]:
-        self._road.away[traffic.car] = []
+        self._road.away.add(traffic.car)
         self._send("enter", car, spec, script, traffic.car, pack_state(traffic.state))
         entered: tuple[Any, dict[str, Any]] = self.finish()
         return entered
@@ -135,7 +136,7 @@ class _CrewElsewhere:
 
     def start(self, until_s: float) -> None:
         """Starts what ``Fleet.go`` does; call ``finish`` next."""
-        passed, self._road.away = self._road.away, {car: [] for car in self._road.away}
+        passed, self._road.passed_away = self._road.passed_away, []
         self._send("go", until_s, passed)
 
     def finish(self) -> Any:
@@ -167,15 +168,16 @@ def _serve(crew: _Crew, channel: MessageChannel) -> NoReturn:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.freeze()  # collecting garbage would copy every page that both share
     road = crew.road
-    road.away = {"the first's": [], "and others": []}  # there are others as long as it lives
+    road.away = {"the first's", "and others"}  # there are others as long as it lives
 
     def enter(
         car: str, spec: DriveSpec, script: DriveScript, name: str, state: Packed
     ) -> tuple[Any, dict[str, Any]]:
         return crew.enter(car, spec, script, road.take(name, state))
 
-    def go(until_s: float, passed: Mapping[str, list[Packed]]) -> None:
-        road.tell(passed)
+    def go(until_s: float, passed: Sequence[bytes]) -> None:
+        for each in passed:
+            road.tell(pickle.loads(each))
         crew.go(until_s)
 
     calls: Mapping[str, Callable[..., Any]] = {"enter": enter, "act": crew.act, "go": go}

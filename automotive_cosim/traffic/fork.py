@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import threading
 from collections import Counter, OrderedDict, deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -224,8 +224,10 @@ class RemoteRoad(_Remote):
         """Whether it goes on without an equipped car, until it is closed."""
         self._cars: WeakValueDictionary[str, RemoteTraffic] = WeakValueDictionary()
         """Who drops a drive without closing it ends it as well."""
-        self.away: dict[str, list[Packed]] = {}
-        """Cars whose drives another process has, and what each has passed that it has not been told."""
+        self.away: set[str] = set()
+        """Cars whose drives another process has."""
+        self.passed_away: list[bytes] = []
+        """What they have passed that has not been told there."""
         self._entered: list[RemoteTraffic] = []
         self._started_s: float | None = None
         self.asked: list[tuple[float, str, RoadRequest]] = []
@@ -277,8 +279,9 @@ class RemoteRoad(_Remote):
 
     def leave(self, car: str) -> None:
         """A cockpit is no longer used; without one, the process ends, unless it is held."""
-        if self._cars.pop(car, None) is None and self.away.pop(car, None) is None:
+        if self._cars.pop(car, None) is None and car not in self.away:
             return
+        self.away.discard(car)
         if not (self._cars or self.away or self.is_held) or self._is_busy:
             self.close()
         elif not self._process.is_broken:
@@ -312,27 +315,26 @@ class RemoteRoad(_Remote):
                 self._send(part_s)
             assert part_s == self._started_s, "another advance was started"
             self._started_s = None
-            passed, entered, self.time_s = self._process.receive()
-            self.tell({car: (each,) for car, each in passed.items()})
+            passed, elsewhere, entered, self.time_s = self._process.receive()
+            self.tell(passed)
+            if self.away:
+                self.passed_away.append(elsewhere)
             if self._original is None:
                 self._entered += [self.take(car, state) for car, state in entered.items()]
 
     def _send(self, duration_s: float) -> None:
-        self._process.send("advance", duration_s, (*self._cars, *self.away))
+        self._process.send("advance", duration_s, tuple(self._cars), tuple(self.away))
         self._started_s = duration_s
 
     def take_turns(self) -> None:
         """From here on, what this process and copies of it ask the road is asked one after the other."""
         self._process.turns = Turns()
 
-    def tell(self, passed: Mapping[str, Iterable[Packed]]) -> None:
+    def tell(self, passed: Mapping[str, Packed]) -> None:
         """Tells cars what they have passed."""
-        for car, parts in passed.items():
-            if car in self.away:
-                self.away[car] += parts
-            elif (traffic := self._cars.get(car)) is not None:
-                for each in parts:
-                    traffic.see(unpack_advance(each))
+        for car, each in passed.items():
+            if (traffic := self._cars.get(car)) is not None:
+                traffic.see(unpack_advance(each))
 
     def reach(self, time_s: float) -> None:
         """Lets the traffic run to a simulation time, unless it has."""
