@@ -216,8 +216,8 @@ def _read(seen: Observation, vehicle: VehicleState, context: str) -> Gathered:
     towed_kmh = [each.kmh for each in defaults if "with a trailer" in each.text and each.is_verified and each.kmh]
     if known.is_posted and towed_kmh:  # the law's for such a car also lowers a sign
         known.limit_kmh = min(filter(None, (known.limit_kmh, *towed_kmh)))
-    stated = [line.kmh for line in defaults if line.kmh is not None]
-    known.likely_kmh = known.limit_kmh if known.is_posted else min(stated, default=None)
+    kmhs = [line.kmh for line in defaults if line.kmh is not None]
+    known.likely_kmh = known.limit_kmh if known.is_posted else min(kmhs, default=None)
     known.reduced, known.law = tuple(reduced), law
     return known
 

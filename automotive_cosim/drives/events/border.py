@@ -37,9 +37,9 @@ def crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
     """The border crossed within the last minute; None without one, or if a country is unknown."""
     now, count = drive[-1], len(drive)
     known = _KNOWN.get(id(now))
-    if known is None or known.moment is not now or known.count != count:
+    if known is None or known.moment is not now or known.moments != count:
         before = _KNOWN.pop(id(drive[-2]), None) if count > 1 else None
-        if before is not None and before.moment is drive[-2] and before.count == count - 1 and before.is_one:
+        if before is not None and before.moment is drive[-2] and before.moments == count - 1 and before.is_one:
             is_one = before.moment.context.country == now.context.country
         else:
             first = max(bisect_left(drive, now.time_s - BORDER_S, key=_time_s) - 2, 0)
@@ -52,7 +52,7 @@ def crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
 
 class _Known(NamedTuple):
     moment: Moment
-    count: int
+    moments: int
     """How many there are up to this one."""
     is_one: bool
     """Whether they are all in one country, as far as it matters."""
