@@ -33,7 +33,7 @@ from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.keeper import started
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
-from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess, Turns
+from automotive_cosim.traffic.remote import TIMEOUT_S, Baton, RemoteProcess
 from automotive_cosim.traffic.shadow import Passed, by_step
 from automotive_cosim.traffic.steering import KEEPS_ROUTE
 from automotive_cosim.traffic.sumo import EGO
@@ -328,7 +328,7 @@ class RemoteRoad(_Remote):
 
     def take_turns(self) -> None:
         """From here on, what this process and copies of it ask the road is asked one after the other."""
-        self._process.turns = Turns()
+        self._process.baton = Baton()
 
     def tell(self, passed: Mapping[str, Packed]) -> None:
         """Tells cars what they have passed."""

@@ -81,7 +81,7 @@ class _Silence:
         return before_s < self._used_s < self._began_s + self.limit_s
 
 
-class Turns:
+class Baton:
     """What one of several copies of a process has at a time; the kernel takes it from one that has died."""
 
     def __init__(self) -> None:
@@ -105,7 +105,7 @@ class RemoteProcess:
         self._timeout_s = timeout_s
         self._broken = ""
         self._popen: subprocess.Popen[bytes] | None = None
-        self.turns: AbstractContextManager[None] = nullcontext()
+        self.baton: AbstractContextManager[None] = nullcontext()
         """What a call is made in."""
         self.pid = 0
         self._end: weakref.finalize[..., RemoteProcess] = weakref.finalize(self, channel.close)
@@ -179,7 +179,7 @@ class RemoteProcess:
         Raises:
             TrafficError: it died or hung; otherwise whatever the method raised.
         """
-        with self.turns:
+        with self.baton:
             self.send(name, *arguments, hand_over=hand_over)
             return self.receive(progress, timeout_s)
 
