@@ -633,10 +633,14 @@ _PLACES = {path: (number, place) for number, part in enumerate(PARTS) for place,
 def picker(paths: Sequence[str]) -> Callable[[Mapping[str, Any]], tuple[Any, ...]]:
     """A function that takes the values of several paths at once from a snapshot, or from any paths and values."""
     named: Callable[[Mapping[str, Any]], tuple[Any, ...]] = itemgetter(*paths)
-    placed: Callable[[tuple[Any, ...]], tuple[Any, ...]] = itemgetter(*map(sum(PARTS, ()).index, paths))
+    number, *others = {_PLACES[path][0] for path in paths}
+    within = PARTS[number] if not others else sum(PARTS, ())
+    placed: Callable[[tuple[Any, ...]], tuple[Any, ...]] = itemgetter(*map(within.index, paths))
 
     def pick(values: Mapping[str, Any]) -> tuple[Any, ...]:
-        return placed(sum(values._parts, ())) if isinstance(values, Snapshot) else named(values)
+        if not isinstance(values, Snapshot):
+            return named(values)
+        return placed(sum(values._parts, ()) if others else values._parts[number])
 
     return pick
 

@@ -156,7 +156,7 @@ def _kmh(now: Moment) -> float:
     return now.driving.speed_mps * KMH_PER_MPS
 
 
-def _before(drive: Drive, seconds: float = TREND_S) -> Moment:
+def before(drive: Drive, seconds: float = TREND_S) -> Moment:
     """The moment so long ago, or the first."""
     from_s = drive[-1].time_s - seconds
     for moment in reversed(drive):
@@ -173,10 +173,10 @@ def _trend(now: float, before: float, by: float) -> str:
 def _trend_of(drive: Drive, read: Callable[[Moment], float], by: float, over_s: float = TREND_S) -> str:
     """The trend over some seconds; that of the last three, where these go the other way as fast."""
     now = read(drive[-1])
-    whole = _trend(now, read(_before(drive, over_s)), by)
+    whole = _trend(now, read(before(drive, over_s)), by)
     if whole == "steady":
         return whole
-    turned = _trend(now, read(_before(drive, TURN_S)), by * TURN_S / over_s)
+    turned = _trend(now, read(before(drive, TURN_S)), by * TURN_S / over_s)
     return whole if turned == "steady" else turned
 
 

@@ -189,7 +189,7 @@ def _read(seen: Observation, vehicle: VehicleState, context: str) -> Gathered:
     known = Gathered(seen.time_s, vehicle)
     defaults, reduced, law = [], [], {}
     for line in context.splitlines():
-        label, _, text = line.partition(": ")
+        label, text, stated = _stated(line)
         match label:
             case "Place":
                 known.place = text
@@ -202,27 +202,34 @@ def _read(seen: Observation, vehicle: VehicleState, context: str) -> Gathered:
             case "Posted for certain hours":
                 known.hours_kmh = _kmh(text)
             case "Default limit":
-                defaults.append(_law(text))
+                defaults.append(stated)
             case "Reduced limit":
-                reduced.append(_law(text))
+                reduced.append(stated)
             case "Time":
                 known.sun_deg = _sun_deg(text)
             case "Weather":
                 _read_weather(known, text)
             case _:
-                law[label] = _law(text)
+                law[label] = stated
     if not known.is_posted and len(defaults) == 1 and defaults[0].is_verified:
         known.limit_kmh = defaults[0].kmh
     towed_kmh = [each.kmh for each in defaults if "with a trailer" in each.text and each.is_verified and each.kmh]
     if known.is_posted and towed_kmh:  # the law's for such a car also lowers a sign
         known.limit_kmh = min(filter(None, (known.limit_kmh, *towed_kmh)))
-    stated = [line.kmh for line in defaults if line.kmh is not None]
-    known.likely_kmh = known.limit_kmh if known.is_posted else min(stated, default=None)
+    kmhs = [line.kmh for line in defaults if line.kmh is not None]
+    known.likely_kmh = known.limit_kmh if known.is_posted else min(kmhs, default=None)
     known.reduced, known.law = tuple(reduced), law
     return known
 
 
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=4096)
+def _stated(line: str) -> tuple[str, str, LawLine]:
+    """A line's label, its text, and what that says if it states a rule. Cached, as most lines are the same from
+    second to second."""
+    label, _, text = line.partition(": ")
+    return label, text, _law(text)
+
+
 def _law(text: str) -> LawLine:
     start = _SPEED.match(text)
     return LawLine(text, None if start is None else _kmh(start[0]), ", verified " in text)

@@ -6,8 +6,8 @@ what they share is the road. A fleet of one is that environment, step by step.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
-from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import gymnasium as gym
@@ -17,14 +17,14 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from automotive_cosim.contracts import Action
-from automotive_cosim.drives.departure import Departures, drive_of
+from automotive_cosim.drives.departure import Departures, car_named
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.envs.base import Stepped, action_of
+from automotive_cosim.envs.crew import Crews
 from automotive_cosim.envs.drive import DriveEnv, DrivesEnv
 from automotive_cosim.envs.flat_drive import ACTIONS, FlatDriveEnv
 from automotive_cosim.envs.numbers import number_of
-from automotive_cosim.episode.fleet import Fleet
 from automotive_cosim.errors import ActionError, UserError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.tasking.draws import SEED_LIMIT
@@ -85,9 +85,11 @@ class FleetEnv(ParallelEnv):
         self.observation_spaces = {car: env.observation_space for car, env in self.envs.items()}
         self.action_spaces = {car: env.action_space for car, env in self.envs.items()}
         self._is_flat = flat
-        self._fleet: Fleet[Stepped[Any]] = Fleet(1.0)
         self._specs: dict[str, DriveSpec] = {}
         self._departures: Departures | None = None
+        self._crews: Crews | None = None
+        self.away: frozenset[str] = frozenset()
+        """Cars that a copy of this process drives after the next ``reset``; their ``envs`` here have no episode."""
         self._seen: dict[str, Any] = {}
 
     def observation_space(self, agent: str) -> gym.spaces.Space[Any]:
@@ -107,6 +109,7 @@ class FleetEnv(ParallelEnv):
             UserError: the drives of the cars are on different roads.
             InfrastructureError: no gap opened for the first car, or the traffic simulation failed.
         """
+        self._end()
         self._specs = {
             car: env.draw(None if seed is None else seed + number)
             for number, (car, env) in enumerate(self.envs.items())
@@ -114,7 +117,7 @@ class FleetEnv(ParallelEnv):
         first, scripts = self.possible_agents[0], [spec.script for spec in self._specs.values()]
         seen, info = self.envs[first].depart(self._specs[first], scripts[0])
         self._departures = Departures(scripts, self.envs[first].episode.world)
-        self._fleet = Fleet(self._departures.road.step_s)
+        self._crews = Crews(self.envs, self.away, self._departures.road)
         self.agents = [first]
         self._seen = {first: seen}
         return {first: seen}, {first: info}
@@ -127,22 +130,19 @@ class FleetEnv(ParallelEnv):
             ResetNeeded: no car is in the traffic.
             TrafficError: the traffic simulation failed.
         """
-        if not self.agents or self._departures is None:
+        if not self.agents or self._departures is None or self._crews is None:
             raise gym.error.ResetNeeded("no car is in the traffic; call reset()")
-        free = [car for car in self.agents if car not in self._fleet.busy]
+        free = [car for car in self.agents if car not in self._crews.busy]
         if missing := [car for car in free if car not in actions]:
             raise ActionError(f"no action is given for {', '.join(missing)}; give one for every car in agents")
         chosen = {car: self._checked(actions[car]) for car in free}
-        for car in free:
-            env = self.envs[car]
-            self._fleet.begin(car, env.stepping(chosen[car]), partial(self._now_s, car))
-        done = self._fleet.run()
+        done = self._crews.run(chosen)
         told = {car: done.get(car, (self._seen[car], 0.0, False, False, {"busy": True})) for car in self.agents}
         told |= dict(map(self._entered, self._departures.entered()))
         self._seen = {car: each[0] for car, each in told.items()}
         self.agents = [car for car in self.possible_agents if car in told and not (told[car][2] or told[car][3])]
         for car in told.keys() - set(self.agents) if self.agents else ():
-            self._departures.road.leave(drive_of(self.envs[car].episode.world).car)
+            self._departures.road.leave(car_named(self.possible_agents.index(car)))
         return cast(Parts, tuple({car: each[part] for car, each in told.items()} for part in range(5)))
 
     def render(self) -> npt.NDArray[np.uint8] | None:
@@ -155,11 +155,13 @@ class FleetEnv(ParallelEnv):
     def close(self) -> None:
         """Ends the drives and, if nobody else shares them, the warm simulations."""
         self.agents = []
+        self._end()
         for env in self.envs.values():
             env.close()
 
-    def _now_s(self, car: str) -> float:
-        return self.envs[car].episode.world.moment.time_s
+    def _end(self) -> None:
+        if self._crews is not None:
+            self._crews.close()
 
     def _checked(self, action: Any) -> Any:
         """An action that has been tried against its form."""
@@ -171,7 +173,8 @@ class FleetEnv(ParallelEnv):
         """A car that has entered the traffic, and what its agent sees first."""
         number, script, traffic = new
         car = self.possible_agents[number]
-        seen, info = self.envs[car].depart(self._specs[car], script, traffic)
+        assert self._crews is not None
+        seen, info = self._crews.enter(car, self._specs[car], script, traffic)
         return car, (seen, 0.0, False, False, info)
 
 
@@ -185,6 +188,9 @@ class FleetVectorEnv(gym.vector.VectorEnv[npt.NDArray[np.float32], npt.NDArray[n
     ``infos["acted"]`` says of which cars the action counted: those in the traffic that were free. The others have
     reward 0, and cars that are not in the traffic zeros to see. Once no car is left, the fleet departs anew in the
     same step, on drives of another seed.
+
+    Where nothing is rendered and there is a second core, a copy of this process has the cockpits and judges of half
+    of the cars (``FleetEnv.away``); what is told is the same.
     """
 
     metadata = {"autoreset_mode": AutoresetMode.SAME_STEP, "render_modes": ["rgb_array"]}  # noqa: RUF012
@@ -192,6 +198,8 @@ class FleetVectorEnv(gym.vector.VectorEnv[npt.NDArray[np.float32], npt.NDArray[n
     def __init__(self, num_envs: int = 2, **options: Any) -> None:
         """Makes the fleet; ``options`` are those of ``FlatDriveEnv``."""
         self.fleet = FleetEnv(num_envs, flat=True, **options)
+        if self.fleet.render_mode is None and len(os.sched_getaffinity(0)) > 1:
+            self.fleet.away = frozenset(self.fleet.possible_agents[(num_envs + 1) // 2 :])
         self.render_mode = self.fleet.render_mode
         self.num_envs = num_envs
         first = self.fleet.possible_agents[0]

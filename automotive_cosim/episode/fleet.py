@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 from typing import Generic, TypeVar
 
 from automotive_cosim.episode.session import TakesTime
@@ -55,9 +56,21 @@ class Fleet(Generic[R]):
 
         Raises TrafficError: the traffic simulation failed."""
         while self._acts and not self._done:
-            until_s = min(act.wakes_s for act in self._acts.values()) + self._step_s / 2
-            for car in [car for car, act in self._acts.items() if act.wakes_s <= until_s]:
-                self._go_on(car)
+            self.go(self.wakes_s)
+        return self.done()
+
+    @property
+    def wakes_s(self) -> float:
+        """Simulation time at which the next car goes on; infinite if none does anything."""
+        return min((act.wakes_s for act in self._acts.values()), default=inf)
+
+    def go(self, until_s: float) -> None:
+        """Lets the cars go on whose time has come by then. Raises TrafficError: the traffic simulation failed."""
+        for car in [car for car, act in self._acts.items() if act.wakes_s <= until_s + self._step_s / 2]:
+            self._go_on(car)
+
+    def done(self) -> dict[str, R]:
+        """The results of the cars that have done what they were doing since this was last called."""
         done, self._done = self._done, {}
         return done
 

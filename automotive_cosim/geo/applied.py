@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime
-from typing import NamedTuple
 
 from automotive_cosim.contracts import KMH_PER_MPS, STANDING_BELOW_MPS, DrivingState, GpsFix, RoadHere, Weather
 from automotive_cosim.geo.place import Place
@@ -97,7 +96,8 @@ def facts_at(
     )
 
 
-class RulesHere(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class RulesHere:
     """What rules say here and now."""
 
     fixed_limits: tuple[AppliedRule, ...]
@@ -107,6 +107,25 @@ class RulesHere(NamedTuple):
     """Those of other topics."""
     lines: tuple[Line, ...]
     """The others as an agent is told of them."""
+    topics: tuple[str, ...]
+    """Of the others that are told of unasked."""
+    _shown: dict[tuple[bool, ...], tuple[Line, ...]] = field(default_factory=dict)
+
+    def shown(self, matter: tuple[bool, ...]) -> tuple[Line, ...]:
+        """The lines of the topics that matter, and one that names the others; those on request are not shown.
+
+        Args:
+            matter: for each of ``topics``.
+        """
+        if matter not in self._shown:
+            told = {topic for topic, matters in zip(self.topics, matter, strict=True) if matters}
+            kept = {
+                found.rule.id for found in self.others if not found.rule.on_request and found.rule.topic in told
+            }
+            left = ", ".join(TOPICS[topic].casefold() for topic in self.topics if topic not in told)
+            further = (Line(f"Further rules, by query: {left}", "place"),) if left else ()
+            self._shown[matter] = (*(line for line in self.lines if line.source in kept), *further)
+        return self._shown[matter]
 
 
 def _applied(rule: Rule, jurisdiction: str, facts: RuleFacts) -> AppliedRule:
@@ -138,6 +157,7 @@ class _Said:
                 tuple(each for each in found if not each.rule.fixed),
                 others,
                 tuple(Line(each.rule.line, each.rule.id) for each in others),
+                tuple(dict.fromkeys(each.rule.topic for each in others if not each.rule.on_request)),
             )
         return said
 

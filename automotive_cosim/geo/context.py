@@ -18,7 +18,7 @@ from automotive_cosim.geo.binding import BindingLimit, binding
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.geo.rulefacts import RuleFacts
-from automotive_cosim.geo.rules import TOPICS, Rule, Value
+from automotive_cosim.geo.rules import Rule, Value
 from automotive_cosim.geo.sun import Sun, sun_at
 from automotive_cosim.geo.text import BUDGET_TOKENS, KM_PER_MILE, Line, amount_of_speed, position, within_budget
 from automotive_cosim.geo.weather import visibility_class
@@ -177,21 +177,15 @@ class GeoContext:
     @property
     def lines(self) -> tuple[Line, ...]:
         """Every fact and rule with its source, the most important first."""
-        return tuple(_lines(self))
+        return (*_lines(self), *self._said.lines)
 
     @property
     def shown(self) -> tuple[Line, ...]:
         """The lines that can matter here and now, and one that names the topics of the others; not kept, as a drive
         keeps its contexts."""
         air_c = None if self.weather is None else self.weather.temperature_2m
-        told, facts = [found.rule for found in self.rules if not found.rule.on_request], self._facts
-        left = [rule for rule in told if not can_matter(rule.topic, facts, air_c)]
-        ids = {rule.id for rule in left} | {found.rule.id for found in self.rules if found.rule.on_request}
-        kept = tuple(line for line in self.lines if line.source not in ids)
-        if not left:
-            return kept
-        topics = ", ".join(dict.fromkeys(TOPICS[rule.topic].casefold() for rule in left))
-        return (*kept, Line(f"Further rules, by query: {topics}", "place"))
+        said, facts = self._said, self._facts
+        return (*_lines(self), *said.shown(tuple(can_matter(topic, facts, air_c) for topic in said.topics)))
 
     def text(self, budget_tokens: int = BUDGET_TOKENS) -> str:
         """The lines of ``shown`` as text, one fact per line: as many, from the first, as the budget allows."""
@@ -245,7 +239,6 @@ def _lines(context: GeoContext) -> Iterator[Line]:
     if context.place.law:
         law = context.place.law
         yield Line(f"Country: traffic keeps {law.driving_side}; emergency call {', '.join(law.emergency)}", "place")
-    yield from context._said.lines
 
 
 def _place(context: GeoContext) -> str:

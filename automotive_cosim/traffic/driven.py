@@ -55,7 +55,7 @@ class DrivenProcess(RemoteProcess):
         if self._at < len(self._known):
             if self._known[self._at][0] == self._asked:
                 return
-            self._turn_off()
+            self.turn_off()
         self._is_new = self._is_new and name not in ("call", "run") and self._at < MOST_ANSWERS
         super().send(name, *arguments, **more)
 
@@ -74,8 +74,10 @@ class DrivenProcess(RemoteProcess):
         """All so far; empty if they are known to somebody, or more than can be."""
         return self._known if self._is_new else ()
 
-    def _turn_off(self) -> None:
-        """Goes another way than the one that is known, from here on, in a process of its own."""
+    def turn_off(self) -> None:
+        """Goes its own way from here on, in a process that is as far as it is."""
+        if self._at == len(self._known):
+            return
         self._end()
         self._take(self._copied())
         for (name, arguments), _ in self._known[: self._at]:

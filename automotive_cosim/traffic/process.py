@@ -11,6 +11,7 @@ import faulthandler
 import fcntl
 import gc
 import os
+import pickle
 import signal
 import socket
 import stat
@@ -161,13 +162,14 @@ class Server:
         self._convoy.forget(car)
 
     def do_advance(
-        self, duration_s: float, cars: tuple[str, ...]
-    ) -> tuple[dict[str, Packed], dict[str, Packed], float]:
-        """Lets the traffic run; returns what passed for each of those cars, the state of each that entered, and the
-        simulation time."""
-        passed, entered = self._convoy.advance(duration_s, cars, self._running.after_step)
+        self, duration_s: float, cars: tuple[str, ...], away: tuple[str, ...]
+    ) -> tuple[dict[str, Packed], bytes, dict[str, Packed], float]:
+        """Lets the traffic run; returns what passed for each of those cars and, pickled, of those who are told
+        elsewhere, the state of each that entered, and the simulation time."""
+        passed, entered = self._convoy.advance(duration_s, (*cars, *away), self._running.after_step)
+        told, elsewhere = ({car: pack_advance(passed[car]) for car in each} for each in (cars, away))
         first = {car: pack_state(self._convoy.drive(car).state) for car in entered}
-        return {car: pack_advance(each) for car, each in passed.items()}, first, self._running.sumo.time()
+        return told, pickle.dumps(elsewhere, pickle.HIGHEST_PROTOCOL), first, self._running.sumo.time()
 
     def do_request(self, request: RoadRequest, car: str) -> Answer:
         """Makes a request to the driver or the car."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import signal
 import socket
@@ -10,7 +11,7 @@ import sys
 import tempfile
 import weakref
 from collections.abc import Mapping
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -80,6 +81,21 @@ class _Silence:
         return before_s < self._used_s < self._began_s + self.limit_s
 
 
+class Baton:
+    """What one of several copies of a process has at a time; the kernel takes it from one that has died."""
+
+    def __init__(self) -> None:
+        with tempfile.TemporaryFile() as file:
+            self._file = os.dup(file.fileno())
+        weakref.finalize(self, os.close, self._file)
+
+    def __enter__(self) -> None:
+        fcntl.lockf(self._file, fcntl.LOCK_EX)
+
+    def __exit__(self, *error: object) -> None:
+        fcntl.lockf(self._file, fcntl.LOCK_UN)
+
+
 class RemoteProcess:
     """A handle of a simulation's process."""
 
@@ -89,6 +105,8 @@ class RemoteProcess:
         self._timeout_s = timeout_s
         self._broken = ""
         self._popen: subprocess.Popen[bytes] | None = None
+        self.baton: AbstractContextManager[None] = nullcontext()
+        """What a call is made in."""
         self.pid = pid
         self.kept_as = 0
         """By which name the keeper knows of what it is a copy; 0 without one."""
@@ -163,8 +181,9 @@ class RemoteProcess:
         Raises:
             TrafficError: it died or hung; otherwise whatever the method raised.
         """
-        self.send(name, *arguments, hand_over=hand_over)
-        return self.receive(progress, timeout_s)
+        with self.baton:
+            self.send(name, *arguments, hand_over=hand_over)
+            return self.receive(progress, timeout_s)
 
     def send(self, name: str, *arguments: object, hand_over: socket.socket | None = None) -> None:
         """Starts a call whose answer ``receive`` waits for.

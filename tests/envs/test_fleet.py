@@ -1,5 +1,7 @@
 """Several cars in one traffic: a fleet of one is the environment alone, and PettingZoo has nothing to say."""
 
+import os
+import signal
 import warnings
 from typing import Any
 
@@ -7,16 +9,17 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
+from automotive_cosim.agents.cleanup import children
 from automotive_cosim.envs.drive import DriveEnv, DrivesEnv
 from automotive_cosim.envs.flat_drive import ACTIONS
-from automotive_cosim.errors import ActionError, UserError
+from automotive_cosim.errors import ActionError, TrafficError, UserError
 from automotive_cosim.traffic.fork import Simulations
 
 pettingzoo = pytest.importorskip("pettingzoo", reason="the extra rl is not installed")
 
 from pettingzoo.test import parallel_api_test, parallel_seed_test  # noqa: E402
 
-from automotive_cosim.envs.fleet import FleetEnv  # noqa: E402
+from automotive_cosim.envs.fleet import FleetEnv, FleetVectorEnv  # noqa: E402
 
 pytestmark = pytest.mark.sumo
 
@@ -101,6 +104,37 @@ def test_one_policy_sees_all_cars_in_a_vector(simulations: Simulations) -> None:
         ended += terminated | truncated
     assert ended.tolist() == [1, 1, 1]
     assert not (info["final_obs"] == seen).all()
+    envs.close()
+
+
+def test_cars_in_two_processes_are_told_the_same_as_in_one(simulations: Simulations) -> None:
+    """They act, too: requests, and what do-nothing copies hear of the others', have an order."""
+    told = []
+    for apart in (False, True):
+        envs = FleetVectorEnv(5, minutes=0.5, lean=True, simulations=simulations)
+        envs.fleet.away = frozenset({"car_2", "car_4"}) if apart else frozenset()
+        draws, seen = np.random.default_rng(3), [envs.reset(seed=8)]
+        while "final_obs" not in seen[-1][-1]:
+            actions = np.where(draws.random(5) < 0.3, draws.integers(len(ACTIONS), size=5), 1)
+            seen.append(envs.step(actions))  # type: ignore[arg-type]
+        told.append(seen)
+        envs.close()
+    np.testing.assert_equal(*told)
+
+
+def test_a_fleet_whose_second_process_dies_says_so_and_departs_anew(simulations: Simulations) -> None:
+    envs = FleetVectorEnv(2, minutes=0.3, lean=True, simulations=simulations)
+    envs.fleet.away = frozenset()
+    envs.reset(seed=8)
+    before = set(children())
+    envs.fleet.away = frozenset({"car_1"})
+    envs.reset(seed=8)
+    (copy,) = set(children()) - before
+    os.kill(copy, signal.SIGKILL)
+    with pytest.raises(TrafficError, match="half of the fleet's cockpits ended; reset the fleet"):
+        envs.step(np.ones(2, np.int64))
+    envs.reset(seed=8)
+    envs.step(np.ones(2, np.int64))
     envs.close()
 
 

@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import AlertKind
@@ -35,22 +35,37 @@ class BorderCrossing:
 
 def crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
     """The border crossed within the last minute; None without one, or if a country is unknown."""
-    for moment, count, found in _KNOWN:
-        if moment is drive[-1] and count == len(drive):
-            return found
-    _KNOWN[:] = [(drive[-1], len(drive), _crossing(drive))]
-    return _KNOWN[0][2]
+    now, count = drive[-1], len(drive)
+    known = _KNOWN.get(id(now))
+    if known is None or known.moment is not now or known.moments != count:
+        before = _KNOWN.pop(id(drive[-2]), None) if count > 1 else None
+        if before is not None and before.moment is drive[-2] and before.moments == count - 1 and before.is_one:
+            is_one = before.moment.context.country == now.context.country
+        else:
+            first = max(bisect_left(drive, now.time_s - BORDER_S, key=_time_s) - 2, 0)
+            is_one = len({*map(_country, drive[first:])}) == 1
+        if len(_KNOWN) >= MOST_KNOWN:
+            _KNOWN.clear()
+        known = _KNOWN[id(now)] = _Known(now, count, is_one, None if is_one else _crossing(drive))
+    return known.found
 
 
-_KNOWN: list[tuple[Moment, int, BorderCrossing | None]] = []
-"""The last answer, for the last of so many moments: two kinds ask for it, and to look back takes long."""
+class _Known(NamedTuple):
+    moment: Moment
+    moments: int
+    """How many there are up to this one."""
+    is_one: bool
+    """Whether they are all in one country, as far as it matters."""
+    found: BorderCrossing | None
+
+
+_KNOWN: dict[int, _Known] = {}
+"""The last answer on each drive, by the id of its last moment: two kinds ask, and to look back takes long."""
+MOST_KNOWN = 256
 
 
 def _crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
     here, now_s = drive[-1].context.country, drive[-1].time_s
-    first = max(bisect_left(drive, now_s - BORDER_S, key=_time_s) - 2, 0)
-    if len({*map(_country, drive[first:])}) == 1:  # as nearly always
-        return None
     for back, moment in enumerate(reversed(drive), start=1):
         if moment.context.country != here:
             known = bool(here and moment.context.country)

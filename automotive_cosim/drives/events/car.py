@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.occupants import Seat, seated_by
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, MOTION
 from automotive_cosim.contracts import AlertKind, PullOver, Reroute
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.changes import before
 from automotive_cosim.drives.events.base import EventKind, Measured, Sighting, Wanted, off
 from automotive_cosim.drives.events.law import grows, speed_kmh
 
@@ -138,12 +139,12 @@ class Tyre(EventKind):
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Reads the lowest tyre pressure."""
         signals = drive[-1].signals
-        lowest_kpa = min(float(signals[tyre.path]) for tyre in TYRES)
+        then, lowest_kpa = before(drive).signals, min(float(signals[tyre.path]) for tyre in TYRES)
         words = f"a tyre at {lowest_kpa:.0f} kPa"
         severity = max(1.0, (RECOMMENDED_KPA - lowest_kpa) / (RECOMMENDED_KPA - WARM_KPA))
         if lowest_kpa < LOW_KPA:
             yield Sighting(words, due=True, hold_s=5.0, severity=severity)
-        elif any(grows(drive, tyre.path, -LEAK_KPA) for tyre in TYRES):
+        elif any(float(signals[tyre.path]) - float(then[tyre.path]) <= -LEAK_KPA for tyre in TYRES):
             yield Sighting(f"{words}, and falling", severity=severity)
         elif lowest_kpa < WARM_KPA:
             yield Sighting(words, lookalike=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.changes import before
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.binding import BindingLimit
 from automotive_cosim.geo.context import GeoContext
@@ -63,9 +64,7 @@ def may_say(context: GeoContext, topic: str, word: str) -> bool:
 def grows(drive: Sequence[Moment], path: str, by: float, within_s: float = TREND_S) -> bool:
     """Whether a signal has grown at least by so much within the last seconds of a drive, or since it began; with a
     negative ``by``, whether it has fallen."""
-    from_s = drive[-1].time_s - within_s
-    then = next((moment for moment in reversed(drive) if moment.time_s <= from_s), drive[0])
-    change = float(drive[-1].signals[path]) - float(then.signals[path])
+    change = float(drive[-1].signals[path]) - float(before(drive, within_s).signals[path])
     return change >= by if by > 0 else change <= by
 
 
