@@ -104,9 +104,7 @@ def fleets_in(folder: Path) -> Iterator[tuple[str, bool]]:
 
 
 def read_fleet(folder: Path, name: str) -> DrivenFleet | None:
-    """A fleet's cars; None if they were not recorded.
-
-    Raises UserError: the file is damaged."""
+    """A fleet's cars; None if they were not recorded. Raises UserError: the file is damaged."""
     path = folder / LIVE / name / ROAD
     if not path.is_file():
         return None

@@ -197,9 +197,7 @@ def _bears(edge: Edge, sign: str, speed_mps: float | None) -> bool:
 
 
 def _sign_mps(sign: str) -> float | None:
-    """The speed of a sign; None for ``none`` and ``unposted``.
-
-    Raises ScenarioError: it is not a ``maxspeed``."""
+    """The speed of a sign; None for ``none`` and ``unposted``. Raises ScenarioError: it is not a ``maxspeed``."""
     if sign == UNPOSTED:
         return None
     try:

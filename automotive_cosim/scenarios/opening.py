@@ -56,9 +56,7 @@ def open_scenario(
 
 
 def network_of(scenario: Scenario) -> Network:
-    """The scenario's network, on its side of the road and at its place.
-
-    Raises ScenarioError: it cannot be read."""
+    """The scenario's network, on its side of the road and at its place. Raises ScenarioError: it cannot be read."""
     return placed(read_mapped(read_configuration(scenario.config)), scenario)
 
 

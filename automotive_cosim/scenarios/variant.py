@@ -32,9 +32,7 @@ MOST_COPIED_BYTES = 2**32
 
 
 def check_target(target: Path) -> None:
-    """Refuses a folder that is not empty.
-
-    Raises UserError: it is not."""
+    """Refuses a folder that is not empty. Raises UserError: it is not."""
     if target.exists() and any(target.iterdir()):
         raise UserError(f"{target} exists; give --out another folder, or delete that one")
 
@@ -182,9 +180,7 @@ def _copied(configuration: Configuration, home: Path, draft: Path, folder: Path)
 
 
 def _inside(path: Path, home: Path) -> Path:
-    """The path, unless it is in a folder and a link leads it out of there.
-
-    Raises UserError: one does."""
+    """The path, unless it is in a folder and a link leads it out of there. Raises UserError: one does."""
     if Path(os.path.normpath(path)).is_relative_to(home) and not path.resolve().is_relative_to(home.resolve()):
         raise UserError(f"{path} is a link that leads out of {home}; put the file itself there")
     return path

@@ -16,9 +16,7 @@ from automotive_cosim.serve.records import NotHereError
 
 
 def fleets(folder: Path) -> Json:
-    """Those that have been driven, or are being driven.
-
-    Raises UserError: the folder is damaged."""
+    """Those that have been driven, or are being driven. Raises UserError: the folder is damaged."""
     manifest = read_manifest(folder)
     return {
         "name": folder.name,

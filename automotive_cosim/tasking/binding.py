@@ -125,9 +125,7 @@ def _unit_at_home(half: Half) -> str:
 
 
 def rules_of(half: Half) -> tuple[Rule, ...]:
-    """The rules of law that a half names.
-
-    Raises UnknownNameError: there is no such rule."""
+    """The rules of law that a half names. Raises UnknownNameError: there is no such rule."""
     return tuple(_rule(rule_id.strip(), shipped()) for rule_id in half.rule.split(","))
 
 

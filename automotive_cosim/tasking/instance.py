@@ -130,9 +130,7 @@ def phrased(
 
 
 def speech(task: Task, language: Language) -> Speech:
-    """How the driver says a task in a language other than English.
-
-    Raises UserError: he has no words for it."""
+    """How the driver says a task in a language other than English. Raises UserError: he has no words for it."""
     if language not in task.languages:
         why = f": {task.only_english}" if task.only_english else ""
         raise UserError(

@@ -107,9 +107,7 @@ def signals_by_name() -> Mapping[str, Signal[Any]]:
 
 
 def signal_named(name: str) -> Signal[Any]:
-    """The signal of a path or a short name.
-
-    Raises UnknownNameError: there is none."""
+    """The signal of a path or a short name. Raises UnknownNameError: there is none."""
     known = signals_by_name()
     if name not in known:
         raise UnknownNameError("signal", name, known, "automotive-cosim show signals")
@@ -117,9 +115,7 @@ def signal_named(name: str) -> Signal[Any]:
 
 
 def checked(signal: Any, value: Any) -> Any:
-    """A value as the signal has it; placeholders are taken as they are.
-
-    Raises SignalError: it cannot have it."""
+    """A value as the signal has it; placeholders are taken as they are. Raises SignalError: it cannot have it."""
     if not isinstance(signal, Signal) or isinstance(value, Param) or (isinstance(value, str) and "{" in value):
         return value
     return signal.check(str(value) if isinstance(value, str) else value)
@@ -143,9 +139,7 @@ class _Reader:
         return not self.done and self._tokens[self._at + 1] == ("sign", "=")
 
     def next(self, *kinds: str) -> str:
-        """The text of the present token, which is then read.
-
-        Raises UserError: it is of no such kind."""
+        """The text of the present token, which is then read. Raises UserError: it is of no such kind."""
         if self.done or self.kind not in kinds:
             wanted = " or ".join(KINDS[kind] for kind in kinds)
             raise UserError(f"expected {wanted}, found {'the end' if self.done else repr(self.text)}")
@@ -163,9 +157,7 @@ class _Reader:
         return True
 
     def needs(self, text: str, kind: str = "word") -> None:
-        """Reads that token.
-
-        Raises UserError: it is another."""
+        """Reads that token. Raises UserError: it is another."""
         if not self.takes(text, kind):
             raise UserError(f"expected {text!r}, found {'the end' if self.done else repr(self.text)}")
 
@@ -359,16 +351,12 @@ _ACTIONS = {str(kind): kind for kind in ActionType}
 
 
 def goal(text: str, decode: Decode) -> Any:
-    """A check as it is written.
-
-    Raises UserError: an unknown condition, signal or field, or something is wrong."""
+    """A check as it is written. Raises UserError: an unknown condition, signal or field, or something is wrong."""
     return _whole(_Goals(text, decode))
 
 
 def condition(text: str, decode: Decode) -> Any:
-    """A condition of a trigger as it is written.
-
-    Raises UserError: as in ``goal``."""
+    """A condition of a trigger as it is written. Raises UserError: as in ``goal``."""
     return _whole(_Conditions(text, decode))
 
 

@@ -109,9 +109,7 @@ def own_files(folder: Path) -> list[Path]:
 
 
 def tasks_of(path: Path) -> Iterable[Task]:
-    """The tasks of a file.
-
-    Raises UserError: it cannot be used: file, line and reason."""
+    """The tasks of a file. Raises UserError: it cannot be used: file, line and reason."""
     if path.suffix == ".py":
         return _by_python(path)
     from automotive_cosim.tasking.own_files import check  # with the whole car, which the catalogue does without

@@ -119,9 +119,7 @@ _FORM = re.compile(r"|\.[0-3]f|g|d")
 
 
 def names(value: object) -> frozenset[str]:
-    """The names of the parameters in a value.
-
-    Raises ValueError: as in ``named_in``."""
+    """The names of the parameters in a value. Raises ValueError: as in ``named_in``."""
     asked = set[str]()
     parts: list[Any] = [value]
     seen: set[int] = set()  # the many shared parts of a catalogue are searched once

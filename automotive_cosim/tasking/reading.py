@@ -82,9 +82,7 @@ def shared() -> Shared:
 
 
 def moves(text: str) -> tuple[Move, ...]:
-    """Moves without placeholders (``notation``).
-
-    Raises UserError: something is wrong with them."""
+    """Moves without placeholders (``notation``). Raises UserError: something is wrong with them."""
     return notation.moves(text, _Reader("", shared().names, shared(), _Cost()).decode)
 
 
@@ -145,9 +143,7 @@ class _Cost:
         self._sizes: dict[int, tuple[int, object]] = {}
 
     def add(self, amount: int) -> None:
-        """Counts what is about to be made.
-
-        Raises UserError: that is too much."""
+        """Counts what is about to be made. Raises UserError: that is too much."""
         self._left -= amount
         if self._left < 0:
             raise UserError(f"makes more than {bounds.TASK_COST:,} values and characters of this file")

@@ -301,9 +301,7 @@ class Task:
         return self.suite.max_steps
 
     def half(self, name: str) -> Half:
-        """The half ``first`` or ``second``.
-
-        Raises UnknownNameError: there is no such half."""
+        """The half ``first`` or ``second``. Raises UnknownNameError: there is no such half."""
         halves = {"first": self.first} | ({"second": self.second} if self.second else {})
         if name not in halves:
             raise UnknownNameError(f"half of task {self.id!r}", name, halves)

@@ -89,7 +89,6 @@ def test_a_well_formed_file_reads(tmp_path: Path) -> None:
     [
         ('topic = "limit"', 'topic = "limt"', 13, "no topic named 'limt': did you mean 'limit'"),
         ('id = "XX.limit"', 'id = "YY.limit"', 12, "id is 'YY.limit'; it must begin with 'XX.'"),
-        ("value = 30", "value = -30", 15, "value is -30; it must be a number of at least 0"),
         ("value = 30", "value = 0", 11, "a limit is above 0"),
         ("value = 30", "value = nan", 15, "value is nan; it must be a number"),
         ("value = 30", "value = [30]", 15, "value is [30]; it must be a number"),
@@ -114,7 +113,6 @@ def test_a_well_formed_file_reads(tmp_path: Path) -> None:
         ("value = 30", 'value = "fast"', 15, "value is 'fast'; it must be a number"),
         ("value = 30", 'value = "allowed"', 11, "a limit is a number or 'none'"),
         ('unit = "mph"', 'unit = "mp/h"', 16, "did you mean 'mph'"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { buildup = true }', 17, "did you mean 'built_up'"),
         (
             'unit = "mph"',
             'unit = "mph"\nwhen = { built_up = 1 }',
@@ -135,7 +133,6 @@ def test_a_well_formed_file_reads(tmp_path: Path) -> None:
         ('status = "verified"', 'status = "sure"', 19, "no status named 'sure'"),
         ("as_of = 2026-01-01", 'as_of = "2026"', 18, "as_of is '2026'; it must be a date"),
         ('law = "Act 1"\n', "", 11, "lacks 'law'; give a text"),
-        ("value = 30\n", "", 11, "either value"),
         ("value = 30\n", "cases = [{ value = 30 }, { value = 20 }]\n", 11, "each limit needs a separate rule"),
     ],
 )
@@ -171,14 +168,10 @@ def test_a_file_is_read_again_once_it_has_changed_and_not_before(tmp_path: Path)
     ("text", "reason"),
     [
         ("[jurisdiction]\ncode XX\n", "at line 2"),
-        ("", "lacks 'jurisdiction'"),
         (HEAD.replace('"left"', '"middle"'), "no driving_side named 'middle'"),
         (HEAD + '[rules]\nid = "XX.limit"\n', "it must be a list of [[rules]] entries"),
-        (HEAD + RULE + RULE, "occurs twice"),
-        (TOWN.replace('within = "ZZ"', 'within = "YY"'), "does not begin with within = 'YY'"),
         (TOWN.replace("[1, 0], ", ""), "polygon"),
         (TOWN.replace("[1, 0], ", "[181, 0], "), "polygon[1][0] is 181; it must be a longitude from -180"),
-        (TOWN.replace("[1, 0], ", "[1, 0], [0, 1], "), "edges cross"),
     ],
 )
 def test_a_wrong_file_is_refused(tmp_path: Path, text: str, reason: str) -> None:

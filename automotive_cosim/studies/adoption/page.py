@@ -229,9 +229,7 @@ def assistants(study: AdoptionStudy) -> Table:
 
 
 def charts(study: AdoptionStudy) -> dict[str, Chart]:
-    """Plots by name.
-
-    Raises SetupError: matplotlib is not installed."""
+    """Plots by name. Raises SetupError: matplotlib is not installed."""
     return charted({"gains": ("How much sooner cars arrive, by the share that is equipped", _gains(study))})
 
 
