@@ -169,7 +169,11 @@ class Server:
         simulation time."""
         passed, entered = self._convoy.advance(duration_s, cars, self._running.after_step)
         first = {car: pack_state(self._convoy.drive(car).state) for car in entered}
-        return {car: pack_advance(each) for car, each in passed.items()}, first, self._running.sumo.time()
+        told = {
+            car: pack_advance((now.packed for now in instants), events)
+            for car, (instants, events) in passed.items()
+        }
+        return told, first, self._running.sumo.time()
 
     def do_request(self, request: RoadRequest, car: str) -> Answer:
         """Makes a request to the driver or the car."""
