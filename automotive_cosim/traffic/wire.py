@@ -76,7 +76,7 @@ def pack_limit(limit: Limit) -> Packed:
 def unpack_state(packed: Packed) -> DrivingState:
     """The state that was packed."""
     row, around = list(packed), packed[_AROUND_AT]
-    road = list(_interned(row[_ROAD_AT]))
+    road = _interned(row[_ROAD_AT])
     road[_LIMIT_AT] = _limit(*road[_LIMIT_AT])
     row[_ROAD_AT] = make_road(*road)
     row[_AHEAD_AT] = unpack_ahead(row[_AHEAD_AT])
@@ -95,9 +95,9 @@ def unpack_ahead(packed: Packed) -> RoadAhead:
     return make_ahead(*row)
 
 
-def _interned(packed: Packed) -> Packed:
+def _interned(packed: Packed) -> list[Any]:
     """With names that are the same ones as before."""
-    return tuple(intern(each) if type(each) is str else each for each in packed)
+    return [intern(each) if type(each) is str else each for each in packed]
 
 
 @lru_cache(maxsize=512)
