@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import pickle
 import socket
 import struct
@@ -31,6 +32,8 @@ class MessageChannel:
     def __init__(self, connection: socket.socket) -> None:
         """Takes ownership of the socket."""
         self._socket = connection
+        self._timeout_s: float | None = math.nan
+        """The socket's, once it is set: to set it again takes a call of the system."""
 
     def fileno(self) -> int:
         """File descriptor of the socket."""
@@ -62,10 +65,12 @@ class MessageChannel:
             ClosedError: the other side is gone, or this one is closed, as at the end of the program.
             TimeoutError: nothing came in time.
         """
-        try:
-            self._socket.settimeout(timeout_s)
-        except OSError as error:
-            raise ClosedError from error
+        if timeout_s != self._timeout_s:
+            try:
+                self._socket.settimeout(timeout_s)
+            except OSError as error:
+                raise ClosedError from error
+            self._timeout_s = timeout_s
         (length,) = _LENGTH.unpack(self._read(_LENGTH.size, waits_on))
         with without_collection() if length > LARGE_BYTES else nullcontext():
             return pickle.loads(self._read(length, waits_on))

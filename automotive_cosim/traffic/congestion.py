@@ -18,10 +18,10 @@ from itertools import islice, pairwise
 from types import MappingProxyType
 from typing import Protocol, TypeAlias
 
-from automotive_cosim.contracts import OLDEST_NEWS_S, IncidentKind, Limit, RoadAhead, RoadIncident, TrafficLight
+from automotive_cosim.contracts import OLDEST_NEWS_S, IncidentKind, Limit, RoadAhead, RoadIncident
 from automotive_cosim.traffic.network import Crossing, Edge, Network
-from automotive_cosim.traffic.records import make_ahead
 from automotive_cosim.traffic.sumo import THE_LIMIT, DesiredSpeed
+from automotive_cosim.traffic.wire import Packed, pack_limit, unpack_ahead
 
 SAMPLE_PERIOD_S = 10.0
 """Time between samples of all edges."""
@@ -288,12 +288,18 @@ class Route:
         leg = self._legs[index]
         return index, max(0.0, min(position_m - leg.start_m, leg.edge.length_m))
 
-    def ahead(self, index: int, position_m: float, next_light: TrafficLight | None) -> RoadAhead:
-        """The figures of the road ahead.
+    def ahead(self, index: int, position_m: float) -> RoadAhead:
+        """The figures of the road ahead, without a light; see ``packed_ahead``."""
+        return unpack_ahead(self.packed_ahead(index, position_m, None))
+
+    def packed_ahead(self, index: int, position_m: float, next_light: Packed | None) -> Packed:
+        """The figures of the road ahead, as ``wire.pack_state`` has them.
 
         Args:
             index: the edge of the route, or the last one before the junction that the car is in.
-            position_m: from the start of the route."""
+            position_m: from the start of the route.
+            next_light: the fields of a ``TrafficLight``.
+        """
         leg = self._legs[index]
         if index not in self._rest:
             self._rest[index] = self.edge_ids[index:]
@@ -303,7 +309,7 @@ class Route:
         free_s = on_edge_m / leg.free_mps + leg.free_after_s
         next_sign = bisect_right(self._signs, position_m, key=lambda each: each[0])
         sign_m, sign = self._signs[next_sign] if next_sign < len(self._signs) else (None, None)
-        return make_ahead(
+        return (
             left_m,
             eta_s,
             max(0.0, eta_s - free_s),
@@ -311,7 +317,7 @@ class Route:
             max(0.0, leg.jam[0] - position_m) if leg.jam else None,
             leg.jam[1] - max(leg.jam[0], position_m) if leg.jam else 0.0,
             next_light,
-            leg.next_limit[0] if leg.next_limit else None,
+            pack_limit(leg.next_limit[0]) if leg.next_limit else None,
             max(0.0, leg.next_limit[1] - position_m) if leg.next_limit else None,
             0.0 if leg.edge.in_tunnel else None if leg.tunnel_m is None else max(0.0, leg.tunnel_m - position_m),
             None if leg.exit_m is None else max(0.0, leg.exit_m - position_m),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from automotive_cosim.errors import TrafficError
-from automotive_cosim.traffic.base import Advance, EgoPlan, Event
+from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.ego_loop import EgoLoop
 from automotive_cosim.traffic.instant import Instant
 from automotive_cosim.traffic.sumo import EGO
@@ -57,7 +57,7 @@ class Convoy:
 
     def advance(
         self, duration_s: float, of: Iterable[str], beat: Callable[[], None]
-    ) -> tuple[dict[str, Advance], list[str]]:
+    ) -> tuple[dict[str, tuple[list[Instant], list[Event]]], list[str]]:
         """Lets the traffic run, as long as an equipped car drives in it or waits for a gap; if no car's states are
         wanted, until one enters.
 
@@ -67,9 +67,9 @@ class Convoy:
             beat: called after every step.
 
         Returns:
-            What passed for each of those cars, and the cars that have entered the traffic."""
-        states: dict[str, list[Instant]] = {car: [] for car in of}
-        events: dict[str, list[Event]] = {car: [] for car in states}
+            What passed for each of those cars, and the cars that have entered the traffic.
+        """
+        told: dict[str, tuple[list[Instant], list[Event]]] = {car: ([], []) for car in of}
         entered: list[str] = []
         world, roads = self._world, self._world.roads
         for _ in range(round(duration_s / world.step_s)):
@@ -82,17 +82,16 @@ class Convoy:
             seen = [roads[car].read(sampled, hazard_lights=drive.hazard_lights) for car, drive in going]
             for (car, drive), (now, passed) in zip(going, seen, strict=True):
                 passed = drive.proceed(now, passed)
-                if car in states:
-                    states[car].append(now)
-                    events[car] += passed
+                if car in told:
+                    told[car][0].append(now)
+                    told[car][1].extend(passed)
             new = world.entered() | self._chosen()
             self._drives |= new
             entered += new
             beat()
-            if new and not states:
+            if new and not told:
                 break
-        made = {car: Advance(tuple(instant.state for instant in states[car]), tuple(events[car])) for car in states}
-        return made, entered
+        return told, entered
 
     def _chosen(self) -> dict[str, EgoLoop]:
         """The drives of the cars that have set out in the last step and get a cockpit."""

@@ -105,9 +105,15 @@ class Incidents:
 
     def tick(self, now_s: float) -> tuple[Event, ...]:
         """Begins and ends the incidents that are due; called once per second of the simulation."""
-        local_time = self._local_time(now_s)
         told: list[str] = []
-        going_on = [entry for entry in self._entries if not entry.is_over]
+        going_on = [
+            entry
+            for entry in self._entries
+            if not entry.is_over and (entry.has_begun or now_s - self._begun_s(entry) >= entry.incident.from_s)
+        ]
+        if not (going_on or self._tools.follows_the_clock):
+            return ()
+        local_time = self._local_time(now_s)
         if any(isinstance(entry.incident, EgoIncident) for entry in going_on):
             left = {tools.ego_id for tools in (self._tools, *self._others) if not tools.is_there}
             going_on = [entry for entry in going_on if not self._has_left(entry, left)]

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from automotive_cosim.contracts import DrivingState, EgoEnd, Limit, OtherVehicle
+from automotive_cosim.contracts import DrivingState, EgoEnd, Limit
 from automotive_cosim.measures.formulas import drac_mps2, time_to_collision_s
 from automotive_cosim.traffic.congestion import Route
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
+from automotive_cosim.traffic.wire import Packed, pack_limit, pack_state, unpack_state
 
 TOUCHING_M = 0.1
 """Minimum gap in the DRAC, so that it stays finite."""
@@ -43,6 +43,11 @@ class Instant(Protocol):
     @property
     def state(self) -> DrivingState: ...
 
+    @property
+    def packed(self) -> Packed:
+        """The state as ``wire.pack_state`` gives it."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class KnownInstant:
@@ -67,6 +72,11 @@ class KnownInstant:
     def end(self) -> EgoEnd | None:
         """Why the drive ended, if it did."""
         return self.state.end
+
+    @property
+    def packed(self) -> Packed:
+        """See ``Instant.packed``."""
+        return pack_state(self.state)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,13 +143,15 @@ class Seen:
     @property
     def state(self) -> DrivingState:
         if self.made is None:
-            self.made = self._make()
+            self.made = unpack_state(self.packed)
         return self.made
 
-    def _make(self) -> DrivingState:
+    @property
+    def packed(self) -> Packed:
+        """See ``Instant.packed``: to make the state first would take as long again."""
         edge, lane, route = self.edge, self.lane, self.route
         lon_deg, lat_deg = self.lon_lat(self.x_m, self.y_m)
-        return make_state(
+        return (
             self.time_s,
             self.x_m,
             self.y_m,
@@ -150,7 +162,7 @@ class Seen:
             self.acceleration_mps2,
             self.standing_s,
             self.distance_m,
-            make_road(
+            (
                 self.edge_id,
                 self.lane_id,
                 lane.index,
@@ -158,7 +170,7 @@ class Seen:
                 self.lane_position_m,
                 edge.name,
                 edge.road_class,
-                lane.limit,
+                pack_limit(lane.limit),
                 edge.in_tunnel,
                 edge.lit,
                 edge.built_up,
@@ -170,12 +182,12 @@ class Seen:
                 edge.bus_lane,
                 lane.alone,
             ),
-            route.ahead(self.index, self.position_m, self.light and make_light(*self.light)),
-            make_around(
-                self.leader and other_vehicle(*self.leader),
-                self.follower and other_vehicle(*self.follower),
-                self.oncoming and other_vehicle(*self.oncoming),
-                self.emergency_behind and other_vehicle(*self.emergency_behind),
+            route.packed_ahead(self.index, self.position_m, self.light),
+            (
+                self.leader and packed_other(*self.leader),
+                self.follower and packed_other(*self.follower),
+                self.oncoming and packed_other(*self.oncoming),
+                self.emergency_behind and packed_other(*self.emergency_behind),
                 route.relative_speed(self.index),
             ),
             self.hazard_lights,
@@ -185,13 +197,13 @@ class Seen:
         )
 
 
-def other_vehicle(
+def packed_other(
     vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: float, kind: str = "", is_braking: bool = False
-) -> OtherVehicle:
+) -> Packed:
     """Adds time to collision and DRAC; ``closing_mps`` is positive while the gap shrinks."""
     gap_m = max(0.0, gap_m)
     ttc_s = needed_mps2 = None
     if closing_mps > 1e-3:
         ttc_s = time_to_collision_s(gap_m, closing_mps)
         needed_mps2 = drac_mps2(max(TOUCHING_M, gap_m), closing_mps)
-    return make_other(vehicle_id, gap_m, speed_mps, ttc_s, needed_mps2, kind, is_braking)
+    return vehicle_id, gap_m, speed_mps, ttc_s, needed_mps2, kind, is_braking

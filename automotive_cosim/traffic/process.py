@@ -167,7 +167,11 @@ class Server:
         """Lets the traffic run; returns what passed for each of those cars and, pickled, of those who are told
         elsewhere, the state of each that entered, and the simulation time."""
         passed, entered = self._convoy.advance(duration_s, (*cars, *away), self._running.after_step)
-        told, elsewhere = ({car: pack_advance(passed[car]) for car in each} for each in (cars, away))
+        packed = {
+            car: pack_advance((now.packed for now in instants), events)
+            for car, (instants, events) in passed.items()
+        }
+        told, elsewhere = ({car: packed[car] for car in each} for each in (cars, away))
         first = {car: pack_state(self._convoy.drive(car).state) for car in entered}
         return told, pickle.dumps(elsewhere, pickle.HIGHEST_PROTOCOL), first, self._running.sumo.time()
 

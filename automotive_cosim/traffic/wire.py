@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import fields
 from functools import lru_cache
 from operator import attrgetter
@@ -58,38 +59,45 @@ def pack_state(state: DrivingState) -> Packed:
     row, ahead, around = list(_STATE(state)), list(_AHEAD(state.ahead)), _AROUND(state.around)
     light = ahead[_LIGHT_AT]
     ahead[_LIGHT_AT] = light and _LIGHT(light)
-    ahead[_NEXT_AT] = ahead[_NEXT_AT] and _as_tuple(ahead[_NEXT_AT])
+    ahead[_NEXT_AT] = ahead[_NEXT_AT] and pack_limit(ahead[_NEXT_AT])
     road = list(_ROAD(state.road))
-    road[_LIMIT_AT] = _as_tuple(road[_LIMIT_AT])
+    road[_LIMIT_AT] = pack_limit(road[_LIMIT_AT])
     row[_ROAD_AT] = road
     row[_AHEAD_AT] = ahead
     row[_AROUND_AT] = (*(other and _OTHER(other) for other in around[:_OTHERS]), *around[_OTHERS:])
     return tuple(row)
 
 
+def pack_limit(limit: Limit) -> Packed:
+    """A limit as a tuple."""
+    return limit.mps, limit.source.value
+
+
 def unpack_state(packed: Packed) -> DrivingState:
     """The state that was packed."""
-    row, ahead, around = list(packed), list(packed[_AHEAD_AT]), packed[_AROUND_AT]
-    light = ahead[_LIGHT_AT]
-    ahead[_LIGHT_AT] = light and make_light(*_interned(light))
-    ahead[_ROUTE_AT], ahead[_SLOW_AT] = _same(ahead[_ROUTE_AT]), _same(ahead[_SLOW_AT])
-    ahead[_NEXT_AT] = ahead[_NEXT_AT] and _limit(*ahead[_NEXT_AT])
-    road = list(_interned(row[_ROAD_AT]))
+    row, around = list(packed), packed[_AROUND_AT]
+    road = _interned(row[_ROAD_AT])
     road[_LIMIT_AT] = _limit(*road[_LIMIT_AT])
     row[_ROAD_AT] = make_road(*road)
-    row[_AHEAD_AT] = make_ahead(*ahead)
+    row[_AHEAD_AT] = unpack_ahead(row[_AHEAD_AT])
     others: Packed = tuple(other and make_other(*_interned(other)) for other in around[:_OTHERS])
     row[_AROUND_AT] = make_around(*others, *around[_OTHERS:])
     return make_state(*row)
 
 
-def _interned(packed: Packed) -> Packed:
+def unpack_ahead(packed: Packed) -> RoadAhead:
+    """The road ahead in a state."""
+    row = list(packed)
+    light = row[_LIGHT_AT]
+    row[_LIGHT_AT] = light and make_light(*_interned(light))
+    row[_ROUTE_AT], row[_SLOW_AT] = _same(row[_ROUTE_AT]), _same(row[_SLOW_AT])
+    row[_NEXT_AT] = row[_NEXT_AT] and _limit(*row[_NEXT_AT])
+    return make_ahead(*row)
+
+
+def _interned(packed: Packed) -> list[Any]:
     """With names that are the same ones as before."""
-    return tuple(intern(each) if type(each) is str else each for each in packed)
-
-
-def _as_tuple(limit: Limit) -> Packed:
-    return limit.mps, limit.source.value
+    return [intern(each) if type(each) is str else each for each in packed]
 
 
 @lru_cache(maxsize=512)
@@ -110,9 +118,9 @@ def _pair(edge: str, relative_speed: float) -> Packed:
     return intern(edge), relative_speed
 
 
-def pack_advance(advance: Advance) -> Packed:
+def pack_advance(states: Iterable[Packed], events: Iterable[Event]) -> Packed:
     """The result of an advance as nested tuples."""
-    return tuple(map(pack_state, advance.states)), tuple(map(_EVENT, advance.events))
+    return tuple(states), tuple(map(_EVENT, events))
 
 
 def unpack_advance(packed: Packed) -> Advance:

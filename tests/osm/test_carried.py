@@ -75,13 +75,13 @@ def test_the_route_tells_how_far_the_camera_is(built: Built) -> None:
     edge = next(edge for edge in built.edges if edge.cameras_m)
     route = Route([edge.edge_id], built.network, free)
     (at_m,) = edge.cameras_m
-    assert route.ahead(0, 0.0, None).camera_distance_m == at_m
-    assert route.ahead(0, at_m - 1.0, None).camera_distance_m == pytest.approx(1.0)
-    assert route.ahead(0, at_m + 1.0, None).camera_distance_m is None
+    assert route.ahead(0, 0.0).camera_distance_m == at_m
+    assert route.ahead(0, at_m - 1.0).camera_distance_m == pytest.approx(1.0)
+    assert route.ahead(0, at_m + 1.0).camera_distance_m is None
     signed = replace(built.network, edges=built.network.edges | {edge.edge_id: replace(edge, sign="stop")})
-    ahead = Route([edge.edge_id], signed, free).ahead(0, 10.0, None)
+    ahead = Route([edge.edge_id], signed, free).ahead(0, 10.0)
     assert (ahead.next_sign, ahead.sign_distance_m) == ("stop", pytest.approx(edge.length_m - 10.0))
-    assert route.ahead(0, 10.0, None).next_sign is None
+    assert route.ahead(0, 10.0).next_sign is None
 
 
 def test_a_crop_holds_what_lies_within(formats: dict[str, Path]) -> None:

@@ -22,9 +22,10 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.ego import EASING_MPS2
-from automotive_cosim.traffic.instant import KnownInstant, other_vehicle
+from automotive_cosim.traffic.instant import KnownInstant, packed_other
 from automotive_cosim.traffic.pedals import RefusedError
 from automotive_cosim.traffic.profiles import DriverProfile
+from automotive_cosim.traffic.records import make_other
 from automotive_cosim.traffic.road_weather import G_MPS2
 from automotive_cosim.traffic.steering import STOPPING_MPS2, STOPPING_RESERVE_M
 from tests.scripted.stretches import Layout, Stretch
@@ -278,7 +279,7 @@ class ScriptedCar:
                 centre_line=stretch.centre_line,
                 friction=stretch.friction,
             ),
-            ahead=layout.route.ahead(index, along_m, None),
+            ahead=layout.route.ahead(index, along_m),
             around=Around(
                 leader=self._leader(stretch),
                 follower=None,
@@ -294,13 +295,15 @@ class ScriptedCar:
         if stretch.leader is None:
             return None
         speed_mps = stretch.leader.speed_kmh / KMH_PER_MPS
-        return other_vehicle("leader", self._leader_m - self._along_m, speed_mps, self._speed_mps - speed_mps)
+        return make_other(
+            *packed_other("leader", self._leader_m - self._along_m, speed_mps, self._speed_mps - speed_mps)
+        )
 
     def _oncoming(self, stretch: Stretch) -> OtherVehicle | None:
         if stretch.oncoming_gap_m is None:
             return None
         speed_mps = stretch.free_mps
-        return other_vehicle("oncoming", stretch.oncoming_gap_m, speed_mps, self._speed_mps + speed_mps)
+        return make_other(*packed_other("oncoming", stretch.oncoming_gap_m, speed_mps, self._speed_mps + speed_mps))
 
 
 def _stopping_speed(before_m: float, deceleration_mps2: float, step_s: float) -> float:

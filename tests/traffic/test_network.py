@@ -215,7 +215,7 @@ def jammed(network: Network, *edges: str, speed_mps: float = 1.0, vehicles: int 
 def test_an_empty_network_flows_freely(town: Network) -> None:
     free = jammed(town)
     assert all(free.relative_speed(edge_id) == 1.0 for edge_id in town.edges)
-    ahead = Route(AVENUE, town, free).ahead(0, 0.0, None)
+    ahead = Route(AVENUE, town, free).ahead(0, 0.0)
     assert ahead.delay_s == pytest.approx(0.0, abs=1e-9)
     assert ahead.relative_speed == pytest.approx(1.0)
     assert (ahead.jam_distance_m, ahead.jam_length_m) == (None, 0.0)
@@ -251,7 +251,7 @@ def test_delay_and_relative_speed_agree(town: Network, speed_mps: float) -> None
     route = Route(AVENUE, town, jammed(town, "c2c3", speed_mps=speed_mps))
     for share in range(20):
         position_m = share / 20 * route.length_m
-        ahead = route.ahead(route.edge_at(position_m)[0], position_m, None)
+        ahead = route.ahead(route.edge_at(position_m)[0], position_m)
         assert ahead.relative_speed == pytest.approx(1 - ahead.delay_s / ahead.eta_s)
         assert (ahead.jam_length_m > 0) <= (ahead.relative_speed < 1)
 
@@ -282,36 +282,36 @@ def test_jams_lie_where_they_are(town: Network) -> None:
     route = Route(AVENUE, town, congestion)
     start_m = route.position_m(3, 0.0)
     end_m = route.position_m(4, town.edges["c3c4"].length_m)
-    far = route.ahead(0, 50.0, None)
+    far = route.ahead(0, 50.0)
     assert far.jam_distance_m == pytest.approx(start_m - 50.0)
     assert far.jam_length_m == pytest.approx(end_m - start_m)
-    inside = route.ahead(3, start_m + 30.0, None)
+    inside = route.ahead(3, start_m + 30.0)
     assert inside.jam_distance_m == 0.0
     assert inside.jam_length_m == pytest.approx(end_m - start_m - 30.0)
-    past = route.ahead(5, route.position_m(5, 1.0), None)
+    past = route.ahead(5, route.position_m(5, 1.0))
     assert (past.jam_distance_m, past.jam_length_m) == (None, 0.0)
     jam_s = sum(town.edges[edge_id].length_m for edge_id in ("c2c3", "c3c4")) / 1.0
     assert far.delay_s == pytest.approx(jam_s, rel=0.2)
-    assert far.eta_s - far.delay_s == pytest.approx(route.ahead(0, 50.0, None).route_left_m / 13.89, rel=0.05)
+    assert far.eta_s - far.delay_s == pytest.approx(route.ahead(0, 50.0).route_left_m / 13.89, rel=0.05)
 
 
 def test_time_to_the_goal_falls_as_fast_as_the_traffic_flows(town: Network) -> None:
     congestion = jammed(town, "c1c2", speed_mps=5.0)
     route = Route(AVENUE, town, congestion)
     for index, edge_id in enumerate(AVENUE):
-        here, there = (route.ahead(index, route.position_m(index, metres), None) for metres in (10.0, 60.0))
+        here, there = (route.ahead(index, route.position_m(index, metres)) for metres in (10.0, 60.0))
         assert here.eta_s - there.eta_s == pytest.approx(50.0 / congestion.speed_mps(edge_id))
 
 
 def test_what_lies_ahead_is_found(town: Network) -> None:
     way = ("s1c1", "c1n1", "n1n2", "n2n3")
     route = Route(way, town, jammed(town))
-    ahead = route.ahead(0, 0.0, None)
+    ahead = route.ahead(0, 0.0)
     assert ahead.tunnel_distance_m == pytest.approx(route.position_m(2, 0.0))
-    assert route.ahead(2, route.position_m(2, 5.0), None).tunnel_distance_m == 0.0
-    assert route.ahead(3, route.position_m(3, 5.0), None).tunnel_distance_m is None
+    assert route.ahead(2, route.position_m(2, 5.0)).tunnel_distance_m == 0.0
+    assert route.ahead(3, route.position_m(3, 5.0)).tunnel_distance_m is None
     assert (ahead.next_limit, ahead.exit_distance_m) == (None, None)
-    changing = Route(("s0s1", "s1c1", "c1c2"), town, jammed(town)).ahead(0, 20.0, None)
+    changing = Route(("s0s1", "s1c1", "c1c2"), town, jammed(town)).ahead(0, 20.0)
     assert changing.next_limit.mps == pytest.approx(30 / 3.6, abs=0.01)
     assert changing.route_edges == ("s0s1", "s1c1", "c1c2")
 
@@ -331,11 +331,11 @@ def test_exits_of_a_motorway(town: Network) -> None:
     for network, last in ((branching, 1), (plain, 3)):
         route = Route(AVENUE, network, jammed(network))
         exit_m = route.position_m(last, network.edges[AVENUE[last]].length_m)
-        assert route.ahead(1, route.position_m(1, 0.0), None).exit_distance_m == pytest.approx(
+        assert route.ahead(1, route.position_m(1, 0.0)).exit_distance_m == pytest.approx(
             exit_m - route.position_m(1, 0.0)
         )
-        assert route.ahead(0, 0.0, None).exit_distance_m is None
-        assert route.ahead(4, route.position_m(4, 0.0), None).exit_distance_m is None
+        assert route.ahead(0, 0.0).exit_distance_m is None
+        assert route.ahead(4, route.position_m(4, 0.0)).exit_distance_m is None
 
 
 @pytest.mark.sumo
@@ -358,7 +358,7 @@ def test_the_shipped_network_is_what_its_sources_make(grid: Scenario, town: Netw
 def test_a_map_is_told_where_the_traffic_is_slow(town: Network) -> None:
     flow = jammed(town, "c1c2", speed_mps=2.0)
     assert flow.slow_edges() == (("c1c2", round(flow.relative_speed("c1c2"), 2)),)
-    assert Route(AVENUE, town, flow).ahead(0, 0.0, None).slow_edges == flow.slow_edges()
+    assert Route(AVENUE, town, flow).ahead(0, 0.0).slow_edges == flow.slow_edges()
     assert jammed(town).slow_edges() == ()
 
 

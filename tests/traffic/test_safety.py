@@ -12,7 +12,8 @@ from shapely import LineString, Point
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.instant import other_vehicle
+from automotive_cosim.traffic.instant import packed_other
+from automotive_cosim.traffic.records import make_other
 from tests.traffic.in_process import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
@@ -20,7 +21,7 @@ Variant = Callable[[Callable[[Path], None]], Scenario]
 
 @pytest.mark.parametrize(("gap_m", "closing_mps"), [(10.0, 5.0), (40.0, 0.5), (3.0, 12.0)])
 def test_braking_at_the_drac_just_avoids_the_crash(gap_m: float, closing_mps: float) -> None:
-    seen = other_vehicle("v", gap_m, 3.0, closing_mps)
+    seen = make_other(*packed_other("v", gap_m, 3.0, closing_mps))
     assert seen.drac_mps2 is not None
     assert seen.time_to_collision_s is not None
     assert closing_mps**2 / (2 * seen.drac_mps2) == pytest.approx(gap_m)
@@ -29,9 +30,9 @@ def test_braking_at_the_drac_just_avoids_the_crash(gap_m: float, closing_mps: fl
 
 def test_who_falls_behind_is_no_danger() -> None:
     for closing_mps in (0.0, -3.0):
-        seen = other_vehicle("v", 5.0, 10.0, closing_mps)
+        seen = make_other(*packed_other("v", 5.0, 10.0, closing_mps))
         assert (seen.time_to_collision_s, seen.drac_mps2) == (None, None)
-    assert other_vehicle("v", -1.0, 10.0, 2.0).drac_mps2 is not None, "finite when they touch"
+    assert make_other(*packed_other("v", -1.0, 10.0, 2.0)).drac_mps2 is not None, "finite when they touch"
 
 
 def crossing_traffic(folder: Path) -> None:
