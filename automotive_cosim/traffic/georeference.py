@@ -25,6 +25,9 @@ from automotive_cosim.contracts import RoadNetwork
 UTM_EASTINGS_M = (100_000.0, 900_000.0)
 """A zone, six degrees wide, spans 166 to 834 km at the equator; SUMO lets networks reach into the next."""
 
+STRETCHED = 0.05
+"""Share by which no projection for a region changes a length; Mercator's of the whole earth does from 18° on."""
+
 MARGIN_DEG, MARGIN_M = 0.1, 10_000.0
 """Edited networks may reach beyond their ``origBoundary``."""
 
@@ -208,6 +211,10 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
         return "has a projection that puts it outside the earth"
     if "+proj=utm" in network.projection and not UTM_EASTINGS_M[0] <= east_m <= UTM_EASTINGS_M[1]:
         return f"has a projection that puts it at an easting of {east_m:.0f} m, outside every UTM zone"
+    there = Proj(network.projection).get_factors(lon_deg, lat_deg)
+    metre_m = max(there.meridional_scale, there.parallel_scale, key=lambda scale: abs(math.log(scale)))
+    if abs(metre_m - 1) > STRETCHED:
+        return f"has a projection in which a metre is {metre_m:.2f} m long there (build it again with --proj.utm)"
     made_from = _made_from(location)
     if not made_from:
         return ""

@@ -41,6 +41,8 @@ def _network(projection: str | None, offset_m: tuple[float, float]) -> RoadNetwo
         (UTM32, (-684000.0, -4928000.0), "-346.83,0,1817.58,2148.55", "contradicts its coordinates"),
         (UTM32, (-684000.0, -4928000.0), "2.2,48.8,2.4,48.9", "contradicts its coordinates"),
         (UTM32, (0.0, 0.0), "0,0,2000,1000", "outside every UTM zone"),
+        ("+proj=merc +a=6378137 +b=6378137 +units=m", (-1258000.0, -5553000.0), "", "a metre is 1.4"),
+        ("+proj=merc +lat_ts=44.5 +units=m", (-898000.0, -3963000.0), "", ""),
         ("+proj=nonsense", (0.0, 0.0), "", "invalid projection"),
         (None, (0.0, 0.0), "", "has no projection"),
     ],
