@@ -146,12 +146,12 @@ def told(
 
 
 def processor_s() -> float:
-    """Processor time of this process and of all that it started and that still run."""
+    """Processor time of this process and of all that it started and that still run, or that were waited for."""
     total = 0.0
     for pid in tree(os.getpid()):
         with suppress(OSError):
             fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-            total += (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+            total += sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
     return total
 
 
