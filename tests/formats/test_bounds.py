@@ -252,6 +252,7 @@ KEPT_IN = {
     "studies/congestion/outputs.py": "the same",
     "traffic/channel.py": "what a process of this package sends",
     "traffic/network.py": "the same",
+    "envs/crew.py": "the same",
     "traffic/keeper.py": "the same, by a socket that nobody else can open",
 }
 """Where such a call stands, and why it may."""

@@ -46,6 +46,7 @@ EXCEPTIONS = {
     "automotive_cosim/cli/terminal.py": "opens this program's own streams again",
     "automotive_cosim/safety/protocol/calculate.py": "a program for another Python, in a scratch folder",
     "automotive_cosim/traffic/process.py": "hands a fork its own copy, in a scratch folder, of what SUMO writes",
+    "automotive_cosim/traffic/remote.py": "locks a file without a name, to take turns with its copies",
     "agents/process.py": "tells the kernel which process is to end first",
     "agents/cleanup.py": "empties what an agent left, deeper than paths are long",
     "automotive_cosim/osm/extract.py": "a link in a scratch folder, by whose name a library knows a format",
