@@ -130,6 +130,6 @@ READERS = (
     ),
     _BoundedReader("a table that a study packed", "formats.csvs", f"{_PACKED}; {CELLS:,} cells"),
     _BoundedReader("a picture of a run", "report.page", f"{PIXELS:,} pixels"),
-    _BoundedReader("a bundle", "publish.archive", f"{_PACKED}; of files that are not; {_process(BUNDLE)}"),
+    _BoundedReader("a bundle", "publish.archive", f"1,000 times its size, at most 8 GB; {_process(BUNDLE)}"),
 )
 """GeoJSON, Parquet and OSI are written and never read."""

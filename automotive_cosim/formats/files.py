@@ -184,11 +184,12 @@ def _refuse_special(path: Path, mode: int) -> None:
         raise OSError(f"{path} is not a regular file")
 
 
-def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
+def opened(path: Path, *, growing: bool = False, most_bytes: int | None = None) -> IO[bytes]:
     """The bytes of a file, unpacked if they are gzip's, bzip2's or xz's, whatever it is called.
 
     Args:
         growing: whether an archive that is cut short ends there, since somebody still writes it.
+        most_bytes: that it may unpack to; by default, as ``bounds.TIMES_UNPACKED`` says.
 
     Raises OSError: it cannot be opened or is not a regular file. Reading raises it too, where an archive is damaged
     or unpacks to too much."""
@@ -198,7 +199,7 @@ def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
         file.seek(0)
         unpack = next((unpack for magic, unpack in _PACKED.items() if head.startswith(magic)), None)
         if unpack is not None:
-            return io.BufferedReader(_Unpacked(unpack(file), path, file, growing), bounds.CHUNK_BYTES)
+            return io.BufferedReader(_Unpacked(unpack(file), path, file, growing, most_bytes), bounds.CHUNK_BYTES)
     except BaseException:
         file.close()
         raise
@@ -217,7 +218,12 @@ class _Unpacked(io.RawIOBase):
     """An archive's content, up to a size."""
 
     def __init__(
-        self, content: gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile, path: Path, packed: IO[bytes], growing: bool
+        self,
+        content: gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile,
+        path: Path,
+        packed: IO[bytes],
+        growing: bool,
+        most_bytes: int | None,
     ) -> None:
         self._content = content
         self._growing = growing
@@ -226,7 +232,7 @@ class _Unpacked(io.RawIOBase):
         self._size = 0
         packed_bytes = path.stat().st_size
         most = min(bounds.UNPACKED_BYTES, bounds.TIMES_UNPACKED * packed_bytes)
-        self._limit = max(bounds.FREELY_UNPACKED_BYTES, most)
+        self._limit = max(bounds.FREELY_UNPACKED_BYTES, most if most_bytes is None else most_bytes)
 
     def readable(self) -> bool:
         return True

@@ -30,8 +30,8 @@ MEMBER = re.compile(
     r"bundle\.json|manifest\.json|episodes\.jsonl|traces/[\w.-]{1,200}\.(?:jsonl\.gz|judged\.json\.xz)"
 )
 """What may be in a bundle."""
-MOST_BYTES = 8 * 2**30
-"""Largest bundle that is unpacked."""
+MOST_BYTES, MOST_TIMES = 8 * 2**30, 1000
+"""What a bundle may unpack to, and as a multiple of its size: many episodes of the same tasks pack 200-fold."""
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)
 """The time of every file: the earliest that a zip can store."""
 
@@ -61,6 +61,11 @@ def lay_out(folder: Path, file: IO[bytes]) -> None:
                 shutil.copyfileobj(source, target)
 
 
+def content(bundle: Path) -> IO[bytes]:
+    """The archive that is packed in a bundle. Raises OSError: it cannot be opened; when read, it is too large."""
+    return opened(bundle, most_bytes=min(MOST_BYTES, MOST_TIMES * bundle.stat().st_size))
+
+
 @contextmanager
 def unpacked(bundle: Path) -> Iterator[Path]:
     """A bundle's files in a folder that is removed afterwards. Raises UserError: as ``unpack``."""
@@ -75,7 +80,7 @@ def unpack(bundle: Path, folder: Path) -> None:
     Raises UserError: it is not a bundle, or contains a file that does not belong there."""
     make_folder(folder, "traces")
     try:
-        with opened(bundle) as source, tempfile.TemporaryFile() as file:
+        with content(bundle) as source, tempfile.TemporaryFile() as file:
             shutil.copyfileobj(source, file)
             size = file.tell()
             with zipfile.ZipFile(file) as archive:

@@ -344,7 +344,7 @@ def lost_table(entries: Sequence[BoardEntry]) -> Table:
         if entry.beside[-1] != NONE
         for each in entry.lost
     )
-    note = "Read from the trace by fixed rules. Unpack the bundle, a zip archive, to open the episode in `serve`."
+    note = "Read from the trace by fixed rules. Unpack the bundle, a zip archive in xz, to open it in `serve`."
     return Table("lost", "What went wrong", LOST_COLUMNS, rows, note, heads=len(LOST_COLUMNS))
 
 

@@ -25,7 +25,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import CosimError, NoRoomError, UserError
 from automotive_cosim.formats import bounds
-from automotive_cosim.formats.files import file_sha256, opened
+from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.formats.limited import LimitedProcesses
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, Contents, counts, read_contents
@@ -189,7 +189,7 @@ def hash_problems(folder: Path, contents: Contents) -> list[Problem]:
 
 
 def _archive_problems(folder: Path, bundle: Path) -> Iterator[Problem]:
-    with tempfile.TemporaryFile() as again, opened(bundle) as file:
+    with tempfile.TemporaryFile() as again, archive.content(bundle) as file:
         archive.lay_out(folder, again)
         again.seek(0)
         pieces = (iter(partial(each.read, bounds.CHUNK_BYTES), b"") for each in (again, file))

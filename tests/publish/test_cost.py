@@ -4,8 +4,10 @@ import gzip
 import json
 import lzma
 import os
+import random
 import time
 import zipfile
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -171,6 +173,16 @@ def test_an_archive_that_holds_more_than_its_size_is_refused(packed, tmp_path):
         zipped._didModify = True
     with pytest.raises(UserError, match=r"is not a bundle|holds more than its size"):
         verify(path)
+
+
+@pytest.mark.parametrize(("size", "fits"), [(2**12, False), (2**18, True)])
+def test_a_bundle_may_unpack_to_hundreds_of_times_its_size(tmp_path, size, fits):
+    path, piece = tmp_path / "b.bundle", random.Random(0).randbytes(size)
+    path.write_bytes(lzma.compress(piece * (2**27 // size), preset=0))
+    assert 2**27 / path.stat().st_size > 150
+    with archive.content(path) as file, nullcontext() if fits else pytest.raises(OSError, match="unpacks to over"):
+        while file.read(2**20):
+            pass
 
 
 def test_an_episode_that_stands_twice_is_found_in_a_bundle_and_in_a_folder(folder, unpacked, tmp_path):
