@@ -92,13 +92,15 @@ class Program(TyperGroup):
     """The program. Its ``--json`` may stand among the words of a command that lists or reports."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Puts ``--json`` before a command that knows it, and behind one that does not, which refuses it."""
-        words, command = [word for word in args if word != "--json"], self
-        for word in words if len(words) < len(args) else ():
+        """Puts ``--json`` before a command that knows it, and behind one that does not, which refuses it. It is never
+        the value of another option, nor is what stands behind ``--`` an option."""
+        end = args.index("--") if "--" in args else len(args)
+        words, rest, command = [word for word in args[:end] if word != "--json"], args[end:], self
+        for word in words if len(words) < end else ():
             command = getattr(command, "commands", {}).get(word, command)
         tells = getattr(command.callback, "tells_json", False)
-        asked = ["--json"] * (len(words) < len(args))
-        return super().parse_args(ctx, [*asked, *words] if tells else [*words, *asked])
+        asked = ["--json"] * (len(words) < end)
+        return super().parse_args(ctx, [*asked, *words, *rest] if tells else [*words, *asked, *rest])
 
 
 @cache

@@ -122,6 +122,11 @@ def test_every_command_that_lists_or_reports_does_so_as_json(cli, command):
         assert is_group or ("No such option: --json" in cli(*words, *["--nope"] * knows).err) is not knows
 
 
+def test_json_is_no_value_of_an_option_and_no_option_behind_two_dashes(cli):
+    assert "'--suite' requires an argument" in cli("tasks", "list", "--suite", "--json").err
+    assert "--json" in cli("tasks", "show", "--", "--json").err
+
+
 def test_every_command_stands_under_a_heading():
     panels = {command.rich_help_panel for command in get_command(app).commands.values()}
     assert 3 <= len(panels) <= 5
