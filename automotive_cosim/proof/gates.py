@@ -243,9 +243,7 @@ def uncoupled(ground: Ground, right: Played) -> Wrong:
     for what, paths in [*((path, {path}) for path in sorted(followed)), ("all that followed", followed)]:
         car = done.copy()
         _give(car, {path: first.commands[path] for path in paths}, end, before[-1])
-        if ground.half.goal.holds(first, last := _as_left(car, end), (*before, last)) and not _wins(
-            ground, right, (*before, last)
-        ):
+        if _loses_with_goal(ground, right, (*before, _as_left(car, end))):
             yield f"fails once {what} is as before, which only followed"
     for switch in sorted(may_part(ground.half)):
         if first.commands[switch]:
@@ -253,8 +251,12 @@ def uncoupled(ground: Ground, right: Played) -> Wrong:
             car.command(named(switch), False)
             car = replayed(car, right.given, before)
             car.sense(end.surroundings, end.time_s - before[-1].time_s)
-            if not _wins(ground, right, (*before, _as_left(car, end))):
+            if _loses_with_goal(ground, right, (*before, _as_left(car, end))):
                 yield f"fails with {switch} off first, so that nothing else follows"
+
+
+def _loses_with_goal(ground: Ground, right: Played, moments: tuple[Moment, ...]) -> bool:
+    return ground.half.goal.holds(moments[0], moments[-1], moments) and not _wins(ground, right, moments)
 
 
 def _give(car: Cockpit, values: Mapping[str, object], end: Moment, before: Moment) -> None:

@@ -275,9 +275,9 @@ def _since(instance: Instance, trace: Sequence[Moment]) -> float | None:
 
 
 COUPLED_BY: Mapping[str, frozenset[str]] = {
-    HVAC.SYNC.path: frozenset({HVAC.DRIVER_TEMPERATURE.path, HVAC.PASSENGER_TEMPERATURE.path})
+    HVAC.SYNC.path: frozenset({HVAC.DRIVER_TEMPERATURE.path, HVAC.PASSENGER_TEMPERATURE.path, "driver.profile"})
 }
-"""Switches that make one command follow another, and the two."""
+"""Switches that make one command follow another, and these; a profile brings its driver's temperature along."""
 SPOKEN = frozenset({"questions"})
 """Commands that leave the car as it is: a question that was not needed costs time and is counted, and only a goal
 that says so forbids it."""
