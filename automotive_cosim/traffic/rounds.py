@@ -71,7 +71,7 @@ class Loops:
         return next((found for found in self._found if edge in found), frozenset())
 
     def largest(self, edges: Iterable[str]) -> frozenset[str]:
-        """The largest set of edges that can all be reached from one another and has part in some, if only of one."""
+        """The largest set, if only of one, of edges that can be reached from one another and has part in some."""
         best: frozenset[str] = frozenset()
         ahead: dict[str, list[str]] = {}
         back: dict[str, list[str]] = {}

@@ -68,7 +68,10 @@ def study(*outcomes: ShareOutcome) -> AdoptionStudy:
 
 
 def seeds_of(driven: Sequence[Sequence[ShareOutcome]]) -> AdoptionStudy:
-    rows = [AdoptionRow(id=f"seed{seed}", scenario="grid", seed=seed, shares=tuple(each)) for seed, each in enumerate(driven)]
+    rows = [
+        AdoptionRow(id=f"seed{seed}", scenario="grid", seed=seed, shares=tuple(each))
+        for seed, each in enumerate(driven)
+    ]
     return AdoptionStudy(Path(), {}, PLAN, tuple(rows))
 
 
@@ -85,7 +88,9 @@ def test_herding_is_what_is_gone_of_the_first_gain() -> None:
     assert gone(study(outcome(0.05, -3, 1), outcome(0.5, 10, -2))) is None
 
 
-@pytest.mark.parametrize(("left_s", "told"), [(10, "75% of the gain is gone (95 %: 2"), (39, "s, which may be chance)")])
+@pytest.mark.parametrize(
+    ("left_s", "told"), [(10, "75% of the gain is gone (95 %: 2"), (39, "s, which may be chance)")]
+)
 def test_herding_has_the_interval_of_its_seeds(left_s: float, told: str) -> None:
     days = [(outcome(0.05, 40, 1), outcome(0.5, left_s + 4 * (-1) ** day, 0)) for day in range(10)]
     assert told in answer(seeds_of(days))
