@@ -28,7 +28,8 @@ from automotive_cosim.studies.calls.chosen import day, prepare
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.fork import Forked
 
-PACKAGES = ("routerl==2.0.0", "eclipse-sumo==1.28.0", "libsumo==1.28.0")
+PACKAGES = ("routerl==2.0.0", "eclipse-sumo==1.28.0"), ("--no-deps", "libsumo==1.28.0")
+"""What each installation gets: libsumo names a traci that RouteRL does not allow, and needs none."""
 LONGER_S = 2.0
 """What RouteRL adds to SUMO's duration and departure delay."""
 WARM_UP_S = 10
@@ -129,7 +130,8 @@ def main() -> None:
     if not home.exists():
         folder.mkdir(parents=True, exist_ok=True)
         venv.create(home, with_pip=True)
-        subprocess.run([home / "bin/pip", "install", "-q", *PACKAGES], check=True)
+        for packages in PACKAGES:
+            subprocess.run([home / "bin/pip", "install", "-q", *packages], check=True)
     sumo = next(home.glob("lib/*/site-packages/sumo"))
     around = os.environ | {"SUMO_HOME": str(sumo), "PATH": f"{sumo / 'bin'}:{os.environ['PATH']}"}
     command = [home / "bin/python", "-c", THEIRS, str(told.cars), str(told.days), str(int(told.libsumo))]

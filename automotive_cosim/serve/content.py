@@ -36,7 +36,7 @@ from automotive_cosim.serve.records import NotHereError, RecordEntry, RecordFold
 
 HEAD = (
     *("task", "half", "scenario", "agent", "model", "seed", "success", "steps", "sim_seconds", "end", "error"),
-    *("goal", "tokens_in", "tokens_out", "model_seconds"),
+    *("agent_error", "goal", "tokens_in", "tokens_out", "model_seconds"),
 )
 SHOWN = (
     *("id", "task", "half", "pair", "scenario", "agent", "model", "seed", "repeat"),

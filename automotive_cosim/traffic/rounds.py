@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Trip
 from automotive_cosim.traffic.network import JunctionLengths, Network
 from automotive_cosim.traffic.ways import way_through
-
-_Graph: TypeAlias = tuple[Mapping[str, Sequence[str]], Mapping[str, Sequence[str]]]
-"""The edges after each edge, and those before it."""
 
 ONWARD_M = 300.0
 """Distance to the destination at which the driver enters the next one: some twenty seconds in a town, so that there
@@ -36,12 +32,66 @@ class Round:
         return (*way, *edges[1:]) if way else ()
 
 
-def planned(network: Network, first: Trip, onward: Sequence[Trip]) -> Round:
-    """The round of some trips on a network.
+class Planner:
+    """Plans rounds on a network. What several cars of a fleet ask for is searched once."""
+
+    def __init__(self, network: Network) -> None:
+        self.network = network
+        """The roads on which it plans, with the present limits."""
+        self._loops = Loops(JunctionLengths(network.crossings))
+        self._rounds: dict[tuple[Trip, ...], Round] = {}
+        """Those of an instant, as limits change."""
+        self._at_s = 0.0
+
+    def planned(self, first: Trip, onward: Sequence[Trip], now_s: float) -> Round:
+        """See ``planned``, at a simulation time."""
+        if now_s != self._at_s:
+            self._rounds, self._at_s = {}, now_s
+        trips = (first, *onward)
+        if trips not in self._rounds:
+            self._rounds[trips] = planned(self.network, first, onward, self._loops)
+        return self._rounds[trips]
+
+    def leads_on(self, here: str, round_: Round) -> bool:
+        """Whether a way leads from an edge into a round."""
+        goal = round_.legs[0][0]
+        return goal in self._loops.known(here) or bool(round_.following(self.network, here, 0))
+
+
+class Loops:
+    """Which edges of a network can be reached from one another."""
+
+    def __init__(self, junctions: Iterable[tuple[str, str]]) -> None:
+        """Takes the edges before and after each way through a junction; nothing is searched yet."""
+        self.junctions = junctions
+        self._found: list[frozenset[str]] = []
+
+    def known(self, edge: str) -> frozenset[str]:
+        """All that are known to be reached from an edge and to reach it; empty if nothing is known of it."""
+        return next((found for found in self._found if edge in found), frozenset())
+
+    def largest(self, edges: Iterable[str]) -> frozenset[str]:
+        """The largest set, if only of one, of edges that can be reached from one another and has part in some."""
+        best: frozenset[str] = frozenset()
+        ahead: dict[str, list[str]] = {}
+        back: dict[str, list[str]] = {}
+        for edge in edges:
+            if not (loop := self.known(edge)):
+                if not ahead:
+                    for here, there in self.junctions:
+                        ahead.setdefault(here, []).append(there)
+                        back.setdefault(there, []).append(here)
+                self._found.append(loop := frozenset(_reached(ahead, edge) & _reached(back, edge)))
+            best = max(best, loop, key=len)
+        return best
+
+
+def planned(network: Network, first: Trip, onward: Sequence[Trip], loops: Loops | None = None) -> Round:
+    """The round of some trips on a network, and what is known of its loops.
 
     Raises ScenarioError: one of them has no route, or no route leads from it to the others."""
     ways = [_way(network, trip) for trip in (first, *onward)]
-    core = _core(_graph(JunctionLengths(network.crossings)), ways[0], [])
+    core = _core(loops or Loops(JunctionLengths(network.crossings)), ways[0])
     parts = [_within(way, core) for way in ways]
     for trip, part in zip((first, *onward), parts, strict=True):
         if not part:
@@ -57,13 +107,17 @@ def in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:
     empty if none leads back to its start."""
     ways = {trip: way_through(network, (trip.from_edge, *trip.via, trip.to_edge)) for trip in trips}
     best: tuple[Trip, ...] = ()
-    graph, parts = _graph(JunctionLengths(network.crossings)), list[frozenset[str]]()
+    loops = Loops(JunctionLengths(network.crossings))
     for first, way in ways.items():
-        core = _core(graph, way, parts)
+        core = _core(loops, way)
         if _within(way, core):
             others = (trip for trip in trips if trip is not first and _within(ways[trip], core))
             best = max(best, (first, *others), key=len)
     return best
+
+
+_LOOPS = [Loops(())]
+"""Those of the network that was asked for last, as every car of a fleet asks."""
 
 
 def loop_with(junctions: Iterable[tuple[str, str]], edge: str) -> frozenset[str]:
@@ -71,17 +125,9 @@ def loop_with(junctions: Iterable[tuple[str, str]], edge: str) -> frozenset[str]
 
     Args:
         junctions: the edges before and after each way through a junction."""
-    ahead, back = _graph(junctions)
-    return frozenset(_reached(ahead, edge) & _reached(back, edge))
-
-
-def _graph(junctions: Iterable[tuple[str, str]]) -> _Graph:
-    ahead: dict[str, list[str]] = {}
-    back: dict[str, list[str]] = {}
-    for here, there in junctions:
-        ahead.setdefault(here, []).append(there)
-        back.setdefault(there, []).append(here)
-    return ahead, back
+    if _LOOPS[0].junctions is not junctions:
+        _LOOPS[0] = Loops(junctions)
+    return _LOOPS[0].largest((edge,))
 
 
 def _way(network: Network, trip: Trip) -> tuple[str, ...]:
@@ -97,18 +143,10 @@ def _within(way: Sequence[str], core: frozenset[str]) -> tuple[str, ...]:
     return tuple(way[places[0] : places[-1] + 1]) if places else ()
 
 
-def _core(graph: _Graph, way: Iterable[str], parts: list[frozenset[str]]) -> frozenset[str]:
-    """The largest set of edges that can all be reached from one another and has part in a way.
-
-    Args:
-        parts: such sets that have been found, and are not searched again."""
-    best: frozenset[str] = frozenset()
-    for edge in way:
-        part = next((part for part in parts if edge in part), None)
-        if part is None:
-            ahead, back = graph
-            parts.append(part := frozenset(_reached(ahead, edge) & _reached(back, edge)))
-        best = max(best, part, key=len)
+def _core(loops: Loops, way: Iterable[str]) -> frozenset[str]:
+    """The largest set of edges that can all be reached from one another and has part in a way; empty if none can be
+    left and reached again."""
+    best = loops.largest(way)
     return best if len(best) > 1 else frozenset()
 
 

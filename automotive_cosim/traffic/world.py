@@ -36,7 +36,7 @@ from automotive_cosim.traffic.options import (
 )
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
-from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
+from automotive_cosim.traffic.rounds import ONWARD_M, Planner, Round
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.signs import inner_lanes, variable_edges
@@ -105,8 +105,8 @@ class World:
             self.network = self._placed(setup)
             self.is_known = reader.known is not None and self.network is read
             """Whether the other process has the same network."""
-            self.always_open = self.network.open_at_all_hours()
-            """The network with the ways only that are open at any hour."""
+            self.planner = Planner(self.network.open_at_all_hours())
+            """Plans with the ways only that are open at any hour."""
             options = run_options(self._configuration, setup, self.network)
             with chdir(scratch):
                 start(self._sumo, command_line(options))
@@ -209,7 +209,7 @@ class World:
         for edge_id, edge in edges.items():
             edges[edge_id] = replace(edge, name=there.edges[edge_id].name)
         self.network = replace(there, edges=edges)
-        self.always_open = self.network.open_at_all_hours()
+        self.planner = Planner(self.network.open_at_all_hours())
         self._incidents.move(scenario.start)
 
     def prepare_copies(self) -> None:
@@ -257,7 +257,7 @@ class World:
         sumo = self._sumo
         if car in sumo.vehicle.getLoadedIDList():
             raise ScenarioError(f"the traffic has a vehicle {car!r} already")
-        round_ = planned(self.always_open, plan.trip, plan.onward) if plan.onward else None
+        round_ = self.planner.planned(plan.trip, plan.onward, sumo.time()) if plan.onward else None
         edges = round_.first if round_ else self._trip_edges(plan.trip)
         self._add_car(car, edges, profile(plan.driver), plan.trip, parked=plan.parked, attention=plan.attention)
         if plan.emission_class:
@@ -644,7 +644,7 @@ class EgoRoad:
         end_m = route.position_m(last, self._world.network.edges[route.edge_ids[last]].length_m)
         if last < here or end_m - self.sensor.position_m > ONWARD_M:
             return ()
-        way = round_.following(self._world.always_open, route.edge_ids[last], self._leg)
+        way = round_.following(self._world.planner.network, route.edge_ids[last], self._leg)
         self._leg += 1
         if not way:
             return ()
@@ -659,7 +659,7 @@ class EgoRoad:
     def _edges_beyond(self, round_: Round) -> int:
         """How many edges at the end of the route are beyond the last from which a way leads on."""
         for beyond, edge_id in enumerate(reversed(self.sensor.route.edge_ids)):
-            if round_.following(self._world.always_open, edge_id, 0):
+            if self._world.planner.leads_on(edge_id, round_):
                 return beyond
         return 0
 

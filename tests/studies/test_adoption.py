@@ -64,19 +64,36 @@ def outcome(share: float, equipped_s: float, others_s: float) -> ShareOutcome:
 
 
 def study(*outcomes: ShareOutcome) -> AdoptionStudy:
-    rows = [AdoptionRow(id=f"seed{seed}", scenario="grid", seed=seed, shares=outcomes) for seed in PLAN.seeds]
+    return seeds_of([outcomes for _ in PLAN.seeds])
+
+
+def seeds_of(driven: Sequence[Sequence[ShareOutcome]]) -> AdoptionStudy:
+    rows = [
+        AdoptionRow(id=f"seed{seed}", scenario="grid", seed=seed, shares=tuple(each))
+        for seed, each in enumerate(driven)
+    ]
     return AdoptionStudy(Path(), {}, PLAN, tuple(rows))
 
 
 def test_herding_is_what_is_gone_of_the_first_gain() -> None:
     found = study(outcome(0.0, 0, 0), outcome(0.05, 40, 1), outcome(0.5, 10, -2), outcome(1.0, -5, 0))
-    assert gone(found) == (0.05, 0.5, 0.75)
-    assert "75% of the gain is gone" in answer(found)
+    herding = gone(found)
+    assert herding is not None
+    assert herding[:3] == (0.05, 0.5, 0.75)
+    assert "75% of the gain is gone, which 2 seeds cannot tell from chance" in answer(found)
     assert "5.0 s later per car" in answer(found)
     assert [row[0] for row in effects(found).rows] == ["0%", "5%", "50%", "100%"]
     assert set(charts(found)) == {"gains"}
     assert any("had not ended" in warning for warning in warnings(found))
     assert gone(study(outcome(0.05, -3, 1), outcome(0.5, 10, -2))) is None
+
+
+@pytest.mark.parametrize(
+    ("left_s", "told"), [(10, "75% of the gain is gone (95 %: 2"), (39, "s, which may be chance)")]
+)
+def test_herding_has_the_interval_of_its_seeds(left_s: float, told: str) -> None:
+    days = [(outcome(0.05, 40, 1), outcome(0.5, left_s + 4 * (-1) ** day, 0)) for day in range(10)]
+    assert told in answer(seeds_of(days))
 
 
 def test_warnings_of_one_kind_on_one_road_within_a_minute_are_of_one_hazard() -> None:
@@ -125,6 +142,15 @@ def test_silent_assistants_change_nothing_and_none_is_plain_sumo(sumo: None) -> 
             world._sumo.step()
             bare.after_step()
         assert bare.trips == none
+
+
+def test_every_share_ends_at_the_same_instant_though_cars_set_out_between_seconds(
+    sumo: None, tmp_path: Path
+) -> None:
+    plan = replace(PLAN, agent="never", seeds=(1,), step_s=0.1, minutes=0.6, shares=(0.0, 100.0))
+    none, full = tried(run_seed)(plan.jobs()[0], tmp_path).shares
+    assert any(round(car.departs_s, 1) % 1 for car in full.cars)
+    assert full.all == none.all
 
 
 @pytest.mark.slow

@@ -54,7 +54,7 @@ export async function fleetPage(query, id, fleet, car) {
     notes.replaceChildren(...every.filter((note) => !car || note.car === car).slice(-MOST).map((note) => h("li", {}, h("button", { type: "button", class: note.text.startsWith(study.fails) ? "no" : "", onclick: () => jump(note.at_s) },
       h("span", { class: "time" }, seconds(note.at_s)), h("span", {}, car ? note.text : `${note.car}: ${note.text}`)))));
     const names = rows.size ? [...rows.keys()] : [...road.vehicles.values()].map((each) => each.id);
-    const count = (name) => String(every.filter((note) => note.car === name).length);
+    const count = (name) => String(every.filter((note) => note.car === name && !note.text.startsWith(study.fails)).length);
     body.replaceChildren(...names.filter((name) => !car || name === car).sort((a, b) => errors.has(b) - errors.has(a)).slice(0, MOST).map((name) => {
       const row = rows.get(name);
       return h("tr", {}, h("td", {}, h("a", { href: place(name) }, name)), study.columns.map((_, index) => h("td", {}, row ? row.cells[index] : index ? "" : "drives")).flat(), h("td", {}, count(name)), h("td", { class: errors.has(name) ? "no" : "" }, row?.error || errors.get(name) || ""));

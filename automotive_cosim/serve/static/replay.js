@@ -74,7 +74,7 @@ export async function replayPage(query, id, episode) {
     verdict.replaceChildren(...(parts.length ? [h("h2", {}, "Verdict"), h("ol", { class: "card parts" },
       parts.map(([name, part]) => h("li", {}, h("b", { class: part.ok ? "yes" : "no" }, `${part.ok ? "✓" : "✗"} ${run.parts[name] ?? plain(name)}`), h("span", {}, part.why)))),
       h("p", { class: "muted" }, `Basis: ${run.verdict.basis}${run.verdict.rule ? `, ${run.verdict.rule}` : ""}`)] : []),
-      ...(run.error ? [h("h2", {}, "Error"), h("p", { class: "warning" }, run.error)] : []));
+      ...(run.error || run.agent_error ? [h("h2", {}, run.error ? "Error" : "The agent failed"), h("p", { class: "warning" }, run.error || run.agent_error)] : []));
   }
 
   function lists() {

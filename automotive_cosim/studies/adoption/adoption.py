@@ -348,7 +348,8 @@ class _Drive:
                     fleet.begin(car.car, self._agent(car), partial(_now_s, car))
                 else:
                     fleet.begin(car.car, self._advised(car), lambda: road.time_s)
-            for_s = 1.0 if fleet.busy or self._record else self._end_s - road.time_s
+            left_s = self._end_s - road.time_s
+            for_s = min(1.0, left_s) if fleet.busy or self._record else left_s
             fleet.begin("", self._clock(for_s), lambda: road.time_s)
             while "" in fleet.busy:
                 for name in fleet.run():

@@ -127,17 +127,23 @@ EQUIPPED, OTHERS, ALL = (
 )
 
 
-def gone(study: AdoptionStudy) -> tuple[float, float, float] | None:
+def gone(study: AdoptionStudy) -> tuple[float, float, float, SeedMean] | None:
     """How much of what an equipped car gains at the smallest share is gone at half, or at the share nearest to it:
-    the two shares, and the part, above 1 if it loses there; None without a gain at the smallest."""
+    the two shares, the part, above 1 if it loses there, and the seconds; None without a gain at the smallest."""
     shares = [share for share in study.shares if share > 0]
     if len(shares) < 2:
         return None
     least, half = shares[0], min(shares[1:], key=lambda share: abs(share - 0.5))
-    first, then = mean(study, least, EQUIPPED), mean(study, half, EQUIPPED)
-    if first is None or then is None or first.value < NOTICED_S:
+    first, then = ({seed: EQUIPPED(each) for seed, each in study.of(share)} for share in (least, half))
+    pairs = [
+        (seed, gain_s, gain_s - left_s)
+        for seed, gain_s in first.items()
+        if gain_s is not None and (left_s := then.get(seed)) is not None
+    ]
+    gained, lost = (seed_mean((pair[0], pair[number]) for pair in pairs) for number in (1, 2))
+    if gained is None or lost is None or gained.value < NOTICED_S:
         return None
-    return least, half, 1 - then.value / first.value
+    return least, half, lost.value / gained.value, lost
 
 
 def answer(study: AdoptionStudy) -> str:
@@ -149,14 +155,22 @@ def answer(study: AdoptionStudy) -> str:
     text = f"With the assistant in {percent(shares[0])} of the cars, one that has it arrives {_sooner(least.value)}"
     herding = gone(study)
     if herding is not None:
-        _, half, part = herding
+        _, half, part, lost = herding
         then = mean(study, half, EQUIPPED)
         assert then is not None
-        text += f"; in {percent(half)}, {_sooner(then.value)}: {part:.0%} of the gain is gone"
+        text += f"; in {percent(half)}, {_sooner(then.value)}: {part:.0%} of the gain is gone{_how_sure(lost)}"
     everybody = mean(study, shares[-1], ALL)
     if everybody is not None:
         text += f". At {percent(shares[-1])}, all cars together arrive {_sooner(everybody.value)} per car"
     return f"{text}; over {counted(least.seeds, 'seed')}."
+
+
+def _how_sure(lost: SeedMean) -> str:
+    """What may be chance in the seconds that are gone."""
+    if lost.interval is None:
+        return f", which {counted(lost.seeds, 'seed')} cannot tell from chance"
+    may_be_none = ", which may be chance" if lost.interval.low <= 0 <= lost.interval.high else ""
+    return f" (95 %: {lost.interval.low:.1f} to {lost.interval.high:.1f} s{may_be_none})"
 
 
 def _sooner(seconds: float) -> str:
