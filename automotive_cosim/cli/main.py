@@ -92,15 +92,23 @@ class Program(TyperGroup):
     """The program. Its ``--json`` may stand among the words of a command that lists or reports."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Puts ``--json`` before a command that knows it, and behind one that does not, which refuses it. It is never
-        the value of another option, nor is what stands behind ``--`` an option."""
-        end = args.index("--") if "--" in args else len(args)
-        words, rest, command = [word for word in args[:end] if word != "--json"], args[end:], self
-        for word in words if len(words) < end else ():
-            command = getattr(command, "commands", {}).get(word, command)
+        """Puts ``--json`` before a command that knows it, and behind one that does not, which refuses it."""
+        command: Any = self
+        takes = set[str]()
+        words, asked, is_value = list[str](), list[str](), False
+        for at, word in enumerate(args):
+            if word == "--":  # behind it stand arguments
+                words += args[at:]
+                break
+            (asked if word == "--json" and not is_value else words).append(word)
+            is_value = word in takes and not is_value
+            if word in getattr(command, "commands", {}):
+                command = command.commands[word]
+                valued = (each for each in command.params if not getattr(each, "is_flag", True))
+                takes = {name for each in valued for name in each.opts}
+        asked = asked[:1]
         tells = getattr(command.callback, "tells_json", False)
-        asked = ["--json"] * (len(words) < end)
-        return super().parse_args(ctx, [*asked, *words, *rest] if tells else [*words, *asked, *rest])
+        return super().parse_args(ctx, [*asked, *words] if tells else [*words, *asked])
 
 
 @cache

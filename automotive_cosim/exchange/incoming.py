@@ -309,7 +309,7 @@ def _scripted(
     entity: ScriptEntity, story: ReadStory, places: RoadPositions, signals: list[dict[str, Any]]
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
     lane, at_m = _start(entity, story, places)
-    way = places.way(entity.name, lane.getEdge(), [places.spot(goal, story.entities) for goal in entity.goals])
+    way = _way(entity, story, places)
     yield (
         "[[incidents]]",
         {
@@ -325,6 +325,11 @@ def _scripted(
         },
     )
     _check_lanes(entity, lane, way, -1 if places.keeps_left else 1)
+    for name, action in {each["of"]: each for each in entity.actions if "lanes" in each}.items():
+        if set(way).isdisjoint(_way(story.entities[name], story, places)):
+            raise action["element"].refused(
+                f"counts lanes from {name}, which never drives along with {entity.name}"
+            )
     for action in sorted((*signals, *entity.actions), key=lambda each: each["at_s"]):
         told = {key: value for key, value in action.items() if key not in _UNWRITTEN}
         for key, whose in (("meets", entity), ("of_meets", story.entities.get(action.get("of", "")))):
@@ -342,6 +347,12 @@ def _scripted(
         for number, group in enumerate(action["when"]):
             for condition in group:
                 yield "[[incidents.actions.when]]", _waits(condition, number, story, places)
+
+
+def _way(entity: ScriptEntity, story: ReadStory, places: RoadPositions) -> Sequence[Any]:
+    """The edges along which a vehicle drives."""
+    lane, _ = _start(entity, story, places)
+    return places.way(entity.name, lane.getEdge(), [places.spot(goal, story.entities) for goal in entity.goals])
 
 
 def _check_lanes(entity: ScriptEntity, lane: Any, way: Sequence[Any], left: int) -> None:

@@ -29,6 +29,8 @@ class Cameras:
 
     beside: dict[str, str] = field(default_factory=dict)
     """By edge, their distances from its start in metres, parted by spaces."""
+    count: int = 0
+    """How many they are."""
     told: dict[str, list[int]] = field(default_factory=dict)
     """Nodes of cameras about which something is to be told, by what."""
 
@@ -53,7 +55,9 @@ def cameras_of(network: Network, extract: Extract) -> Cameras:
             found.tell("at no road of the network, left out", camera)
             continue
         there = [(edges[at], lines[at]) for at in near]
-        for edge, line in _watched(camera, there, point, network, found, is_joint=camera.node in joints):
+        watched = _watched(camera, there, point, network, found, is_joint=camera.node in joints)
+        found.count += bool(watched)
+        for edge, line in watched:
             share = line.project(point, normalized=True)
             places_m.setdefault(edge.edge_id, []).append(round(share * edge.length_m, 1))
     found.beside = {edge: " ".join(f"{place:g}" for place in sorted(places)) for edge, places in places_m.items()}

@@ -135,7 +135,7 @@ def make_report(
         timed_access_km=_km(edge for edge in edges if edge.timed_access),
         timed_turns=sum(len(edge.timed_turns) for edge in edges),
         bus_lane_km=_km(edge for edge in edges if edge.bus_lane),
-        speed_cameras=_cameras(built),
+        speed_cameras=built.cameras.count,
         density_per_km=density_per_km,
         vehicles_per_hour=round(demand_per_hour * stability.scale, 1),
         seed=seed,
@@ -159,17 +159,6 @@ def _km(edges: Iterable[Edge]) -> float:
 
 def _share(whole_m: float, edges: Iterable[Edge]) -> float:
     return round(sum(edge.length_m for edge in edges) / whole_m, 4)
-
-
-def _cameras(built: Built) -> int:
-    """The tags of one direction, where both have them."""
-    seen: set[str] = set()
-    count = 0
-    for edge in built.edges:
-        if built.network.opposite.get(edge.edge_id) not in seen:
-            count += len(edge.cameras_m)
-            seen.add(edge.edge_id)
-    return count
 
 
 def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) -> Iterator[str]:

@@ -239,11 +239,17 @@ def uncoupled(ground: Ground, right: Played) -> Wrong:
         for path in ACTUATORS
         if end.commands[path] != right.baseline[-1].commands[path] and path not in ground.half.goal.writes | aims
     }
+
+    def fails(car: Cockpit) -> bool:
+        """With the goal reached."""
+        trace = (*before, replace(end, signals=car.signals.snapshot(), commands=car.commands()))
+        return ground.half.goal.holds(first, trace[-1], trace) and not _wins(ground, right, trace)
+
     done = replayed(ground.episode.at_hand_over, right.given, before)
     for what, paths in [*((path, {path}) for path in sorted(followed)), ("all that followed", followed)]:
         car = done.copy()
         _give(car, {path: first.commands[path] for path in paths}, end, before[-1])
-        if _loses_with_goal(ground, right, (*before, _as_left(car, end))):
+        if fails(car):
             yield f"fails once {what} is as before, which only followed"
     for switch in sorted(may_part(ground.half)):
         if first.commands[switch]:
@@ -251,7 +257,7 @@ def uncoupled(ground: Ground, right: Played) -> Wrong:
             car.command(named(switch), False)
             car = replayed(car, right.given, before)
             car.sense(end.surroundings, end.time_s - before[-1].time_s)
-            if _loses_with_goal(ground, right, (*before, _as_left(car, end))):
+            if fails(car):
                 yield f"fails with {switch} off first, so that nothing else follows"
 
 
@@ -263,10 +269,6 @@ def _give(car: Cockpit, values: Mapping[str, object], end: Moment, before: Momen
     for path, value in values.items():
         car.command(named(path), value)
     car.sense(end.surroundings, end.time_s - before.time_s)
-
-
-def _as_left(car: Cockpit, end: Moment) -> Moment:
-    return replace(end, signals=car.signals.snapshot(), commands=car.commands())
 
 
 def optional(ground: Ground, right: Played) -> Wrong:

@@ -274,10 +274,14 @@ def _since(instance: Instance, trace: Sequence[Moment]) -> float | None:
     return since
 
 
-COUPLED_BY: Mapping[str, frozenset[str]] = {
-    HVAC.SYNC.path: frozenset({HVAC.DRIVER_TEMPERATURE.path, HVAC.PASSENGER_TEMPERATURE.path, "driver.profile"})
+COUPLED_BY: Mapping[str, tuple[frozenset[str], frozenset[str]]] = {
+    HVAC.SYNC.path: (
+        frozenset({HVAC.DRIVER_TEMPERATURE.path, "driver.profile"}),
+        frozenset({HVAC.PASSENGER_TEMPERATURE.path}),
+    )
 }
-"""Switches that make one command follow another, and these; a profile brings its driver's temperature along."""
+"""Switches that make one command follow another, and what asks for the one and for the other: a driver's profile
+has a temperature."""
 SPOKEN = frozenset({"questions"})
 """Commands that leave the car as it is: a question that was not needed costs time and is counted, and only a goal
 that says so forbids it."""
@@ -299,7 +303,8 @@ def _clean(
 def may_part(half: Half) -> frozenset[str]:
     """Switches that couple what the half asks for to what it does not: whoever wants the one alone may part the
     two."""
-    return frozenset(switch for switch, coupled in COUPLED_BY.items() if len(half.allowed_writes & coupled) == 1)
+    asks = half.allowed_writes
+    return frozenset(each for each, (one, other) in COUPLED_BY.items() if bool(asks & one) != bool(asks & other))
 
 
 def parted(half: Half, commands: Mapping[str, Any]) -> frozenset[str]:

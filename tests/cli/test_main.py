@@ -122,9 +122,18 @@ def test_every_command_that_lists_or_reports_does_so_as_json(cli, command):
         assert is_group or ("No such option: --json" in cli(*words, *["--nope"] * knows).err) is not knows
 
 
-def test_json_is_no_value_of_an_option_and_no_option_behind_two_dashes(cli):
-    assert "'--suite' requires an argument" in cli("tasks", "list", "--suite", "--json").err
-    assert "--json" in cli("tasks", "show", "--", "--json").err
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("tasks validate --tasks --json", "no task, pattern or tag named '--json'"),
+        ("tasks validate --seeds --json --tasks hvac_fan_max", "--seeds"),
+        ("tasks show -- --json", "no task named '--json'"),
+    ],
+)
+def test_what_stands_in_the_place_of_a_value_is_that_value(cli, words, said):
+    ran = cli(*words.split())
+    assert (ran.code, ran.out) == (2, "")
+    assert said in ran.err
 
 
 def test_every_command_stands_under_a_heading():

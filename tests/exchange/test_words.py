@@ -551,11 +551,11 @@ triggeringEntitiesRule="any"><EntityRef entityRef="ego"/></TriggeringEntities><E
 relativeDistanceType="longitudinal"/></EntityCondition></ByEntityCondition></Condition>"""
 
 
-def together(folder, simulations, *events, other_mps=15, seconds=60, right=()):
+def together(folder, simulations, *events, other_mps=15, seconds=60, right=(), lane=-2):
     """How far the ego is along the road, how far the other one, its speed, and its y, each second."""
     first = SPEED.format("step", "time", 0, '<AbsoluteTargetSpeed value="{}"/>')
     places = private("ego", AT.format(-1, 50), first.format(10)) + private(
-        "other", AT.format(-2, 150), first.format(other_mps)
+        "other", AT.format(lane, 150), first.format(other_mps)
     )
     (folder / "road.xodr").write_text(road(section(0, *right), section(110)), "utf-8")
     text = TOGETHER.format(car=VEHICLE.format("v"), places=places, events="".join(events))
@@ -592,6 +592,13 @@ def test_lanes_are_counted_from_another_ones_where_fewer_are(tmp_path, simulatio
     told = event("moves", do(target), TIME.format(0, "none", 1))
     seen = together(tmp_path, simulations, told, seconds=5, right=(2,))
     assert seen[-1][3] == pytest.approx(-3.5 * (lane - 0.5), abs=0.1)
+
+
+def test_lanes_are_not_counted_from_an_oncoming_vehicle(tmp_path):
+    target = LANES.format('<RelativeTargetLane entityRef="ego" value="1"/>')
+    told = event("moves", do(target), TIME.format(0, "none", 1))
+    with pytest.raises(ScenarioError, match="counts lanes from ego, which never drives along"):
+        together(tmp_path, None, told, seconds=1, lane=1)
 
 
 @pytest.mark.sumo

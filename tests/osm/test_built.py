@@ -509,6 +509,7 @@ def test_a_camera_watches_whom_the_map_says(build: Build) -> None:
         made.relations.append((members, {"type": "enforcement", "enforcement": "maxspeed"}))
     world = build(made)
     listed = told(world)
+    assert world.built.cameras.count == sum(bool(ends) for _, _, ends, _ in CAMERAS) + sum(map(bool, watched))
     for index, (tags, road, ends, line) in enumerate(CAMERAS, start=1):
         way = FIRST + index - 1
         found = sorted(

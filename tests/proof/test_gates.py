@@ -31,6 +31,7 @@ from automotive_cosim.tasking.checks import (
     AlertGiven,
     AllOf,
     AnyOf,
+    AppDataIs,
     SignalIs,
     nothing_done,
     road_asked,
@@ -242,6 +243,13 @@ def test_what_only_followed_may_be_set_back_or_kept_from_following(ground, monke
     wrong = list(gates.uncoupled(stand, stand.reference))
     assert any("as before, which only followed" in words for words in wrong)
     assert any("IsSyncActive off first" in words for words in wrong)
+
+
+def test_a_profiles_temperature_may_be_parted_from_the_passengers():
+    half = replace(SOUND.first, goal=AppDataIs("driver.profile", ("Guest",)))
+    assert verdict.may_part(half) == {HVAC.SYNC.path}
+    both = AllOf((half.goal, SignalIs(HVAC.PASSENGER_TEMPERATURE, (21.0,))))
+    assert verdict.may_part(replace(half, goal=both)) == frozenset()
 
 
 def test_sync_is_no_side_effect_only_where_one_side_is_asked_for(ground):
