@@ -261,10 +261,6 @@ def uncoupled(ground: Ground, right: Played) -> Wrong:
                 yield f"fails with {switch} off first, so that nothing else follows"
 
 
-def _loses_with_goal(ground: Ground, right: Played, moments: tuple[Moment, ...]) -> bool:
-    return ground.half.goal.holds(moments[0], moments[-1], moments) and not _wins(ground, right, moments)
-
-
 def _give(car: Cockpit, values: Mapping[str, object], end: Moment, before: Moment) -> None:
     for path, value in values.items():
         car.command(named(path), value)
