@@ -38,7 +38,7 @@ class Planner:
     def __init__(self, network: Network) -> None:
         self.network = network
         """The roads on which it plans, with the present limits."""
-        self._loops = Loops(JunctionLengths(network.crossings))
+        self._loops = _Loops(JunctionLengths(network.crossings))
         self._rounds: dict[tuple[Trip, ...], Round] = {}
         """Those of an instant, as limits change."""
         self._at_s = 0.0
@@ -58,7 +58,7 @@ class Planner:
         return goal in self._loops.known(here) or bool(round_.following(self.network, here, 0))
 
 
-class Loops:
+class _Loops:
     """Which edges of a network can be reached from one another."""
 
     def __init__(self, junctions: Iterable[tuple[str, str]]) -> None:
@@ -86,12 +86,12 @@ class Loops:
         return best
 
 
-def planned(network: Network, first: Trip, onward: Sequence[Trip], loops: Loops | None = None) -> Round:
+def planned(network: Network, first: Trip, onward: Sequence[Trip], loops: _Loops | None = None) -> Round:
     """The round of some trips on a network, and what is known of its loops.
 
     Raises ScenarioError: one of them has no route, or no route leads from it to the others."""
     ways = [_way(network, trip) for trip in (first, *onward)]
-    core = _core(loops or Loops(JunctionLengths(network.crossings)), ways[0])
+    core = _core(loops or _Loops(JunctionLengths(network.crossings)), ways[0])
     parts = [_within(way, core) for way in ways]
     for trip, part in zip((first, *onward), parts, strict=True):
         if not part:
@@ -107,7 +107,7 @@ def in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:
     empty if none leads back to its start."""
     ways = {trip: way_through(network, (trip.from_edge, *trip.via, trip.to_edge)) for trip in trips}
     best: tuple[Trip, ...] = ()
-    loops = Loops(JunctionLengths(network.crossings))
+    loops = _Loops(JunctionLengths(network.crossings))
     for first, way in ways.items():
         core = _core(loops, way)
         if _within(way, core):
@@ -116,7 +116,7 @@ def in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:
     return best
 
 
-_LOOPS = [Loops(())]
+_LOOPS = [_Loops(())]
 """Those of the network that was asked for last, as every car of a fleet asks."""
 
 
@@ -126,7 +126,7 @@ def loop_with(junctions: Iterable[tuple[str, str]], edge: str) -> frozenset[str]
     Args:
         junctions: the edges before and after each way through a junction."""
     if _LOOPS[0].junctions is not junctions:
-        _LOOPS[0] = Loops(junctions)
+        _LOOPS[0] = _Loops(junctions)
     return _LOOPS[0].largest((edge,))
 
 
@@ -143,7 +143,7 @@ def _within(way: Sequence[str], core: frozenset[str]) -> tuple[str, ...]:
     return tuple(way[places[0] : places[-1] + 1]) if places else ()
 
 
-def _core(loops: Loops, way: Iterable[str]) -> frozenset[str]:
+def _core(loops: _Loops, way: Iterable[str]) -> frozenset[str]:
     """The largest set of edges that can all be reached from one another and has part in a way; empty if none can be
     left and reached again."""
     best = loops.largest(way)
