@@ -40,7 +40,7 @@ from automotive_cosim.episode.session import play
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.writing import write_whole
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.traffic.fork import Simulations
 
 WATCHERS: Mapping[str, Callable[[], RulePerfect | Silent | AlertAll | AlertOnWake | AlertOften]] = {

@@ -28,8 +28,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from automotive_cosim.run.job_row import steady
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.row import steady
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.calls.ledger import run_on
 from automotive_cosim.studies.reroute.batch import REROUTE, drives

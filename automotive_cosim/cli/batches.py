@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
     from automotive_cosim.run.forecast import CostForecast, Range
-    from automotive_cosim.run.row import JobRow
+    from automotive_cosim.run.job_row import JobRow
     from automotive_cosim.run.settings import Budget
     from automotive_cosim.scenarios import Scenario
 

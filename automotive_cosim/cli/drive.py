@@ -42,10 +42,10 @@ def run_drive(
     from automotive_cosim.episode.own_prompt import instructions
     from automotive_cosim.report.hearing import with_sounds
     from automotive_cosim.run.drive import DriveSetup
+    from automotive_cosim.run.job_row import as_json as row_json
     from automotive_cosim.run.plan import PlannedTrial
     from automotive_cosim.run.record import Recorder, check_folder, stamped_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
-    from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.rows import DriveTrialRow
     from automotive_cosim.run.trial import Limits, run_trial
     from automotive_cosim.run.trial_folder import read_steps
@@ -106,9 +106,9 @@ def _run_fleet(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.evaluate import limits_told
     from automotive_cosim.run.batch import run_plan
+    from automotive_cosim.run.job_row import as_json as row_json
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.record import stamped_folder
-    from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.rows import DriveTrialRow
     from automotive_cosim.run.settings import Pictures
     from automotive_cosim.run.store import read_rows, read_trace

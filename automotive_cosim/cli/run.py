@@ -258,7 +258,7 @@ def _recorded_pair(
 
 
 def _headline(row: TrialRow) -> Json:
-    from automotive_cosim.run.row import as_json
+    from automotive_cosim.run.job_row import as_json
 
     whole = as_json(row)
     return {name: whole[name] for name in HEADLINE} | row.conditions.as_json()

@@ -276,6 +276,6 @@ def _before(folder: Path, about: Json, points: int) -> tuple[int, float]:
 
 
 def _plain(trial: object) -> Json:
-    from automotive_cosim.run.row import as_json
+    from automotive_cosim.run.job_row import as_json
 
     return as_json(trial)

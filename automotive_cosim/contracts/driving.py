@@ -153,7 +153,7 @@ class RouteOption:
 
 
 class IncidentKind(StrEnum):
-    """What a live-traffic service reports besides slow traffic; the values are those of ``incidents.KINDS``."""
+    """What a live-traffic service reports besides slow traffic; the values are those of a scenario's incidents."""
 
     BREAKDOWN = "breakdown"
     ROADWORKS = "roadworks"

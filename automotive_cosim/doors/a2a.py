@@ -44,10 +44,10 @@ from automotive_cosim.report.results import Contestant, Results, pairs, read_res
 from automotive_cosim.report.stats import Rate
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.run.batch import Progress, run_plan
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.record import stamped_folder
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import EpisodeRow, TrialRow
 from automotive_cosim.scenarios import shipped
 

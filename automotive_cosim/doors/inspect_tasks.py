@@ -46,8 +46,8 @@ from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.report.stats import Interval, wilson
 from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.job_row import as_json, from_json
 from automotive_cosim.run.plan import families_named
-from automotive_cosim.run.row import as_json, from_json
 from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.service.turn import EpisodeTurn

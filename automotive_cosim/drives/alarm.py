@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from automotive_cosim.drives.changes import EASED_S, WAKES, Drive, Level, Nearness, Wake
 
 
-def noticed(drive: Drive, changed: Sequence[str] = (), wakes: Sequence[Wake] = WAKES) -> str:
+def noticed(drive: Drive, changed: Sequence[str] = ()) -> str:
     """Every reading of the car, one line each: its name, whether it has changed, and its words.
 
     Args:
@@ -16,7 +16,7 @@ def noticed(drive: Drive, changed: Sequence[str] = (), wakes: Sequence[Wake] = W
         changed: names of what has changed since the last look; of those that are no longer there, that they ended.
     """
     lines = []
-    for wake in wakes:
+    for wake in WAKES:
         words = wake.words(drive)
         has_changed = wake.name in changed
         if words or has_changed:

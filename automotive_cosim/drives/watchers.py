@@ -154,15 +154,13 @@ class AlertAll:
 
 
 class AlertOnWake:
-    """Gives one kind of alert whenever something wakes it."""
+    """Gives the kind of alert that is right most often whenever something wakes it."""
 
+    name = "alert-on-wake"
     model = "none"
     channels: frozenset[Channel] = frozenset()
 
-    def __init__(self, kind: AlertKind = AlertKind.SPEED) -> None:
-        """Of that kind: speed is the most frequent that is right."""
-        self.name = "alert-on-wake"
-        self._kind = kind
+    def __init__(self) -> None:
         self.reset("")
 
     def reset(self, goal: str) -> None:
@@ -173,7 +171,7 @@ class AlertOnWake:
         """An alert if the wait was ended by something, else a wait."""
         woken = self._waited and "; " in observation.feedback.text
         self._waited = not woken
-        return Action(ActionType.SHOW_ALERT, kind=self._kind) if woken else Action(ActionType.WAIT)
+        return Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED) if woken else Action(ActionType.WAIT)
 
 
 class AlertOften:
@@ -183,9 +181,7 @@ class AlertOften:
     model = "none"
     channels: frozenset[Channel] = frozenset()
 
-    def __init__(self, kind: AlertKind = AlertKind.SPEED, every_s: float = 30.0) -> None:
-        """Alerts of that kind, at that interval."""
-        self._kind, self._every_s = kind, every_s
+    def __init__(self) -> None:
         self.reset("")
 
     def reset(self, goal: str) -> None:
@@ -194,6 +190,6 @@ class AlertOften:
     def act(self, observation: Observation) -> Action:
         """The alert once it is time, else a short wait."""
         if observation.time_s >= self._next_s:
-            self._next_s = observation.time_s + self._every_s
-            return Action(ActionType.SHOW_ALERT, kind=self._kind)
+            self._next_s = observation.time_s + 30.0
+            return Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED)
         return Action(ActionType.WAIT, seconds=10)

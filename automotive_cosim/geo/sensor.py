@@ -1,6 +1,6 @@
 """The virtual sensor: answers an agent's questions with facts.
 
-    reply = ask("rear fog lamp rules?", moments)     # Reply(ok=True, text="Rear fog lamp: ...", cost_s=1.0)
+    reply = ask("rear fog lamp rules?", moments)     # QueryReply(ok=True, text="Rear fog lamp: ...", cost_s=1.0)
 
 It knows the lines of the geo-context, the road ahead, and the position by dead reckoning while GPS is out. It
 states facts; it never says whether a rule is broken nor what to do. Law, customs and position are on board;

@@ -27,7 +27,7 @@ BLOCKS = {0: (1, 4), 1: (1, 2), 2: (32, 18), 3: (32, 20), 6: (32, 22), 7: (32, 2
 """Values and bytes of a block, by a tensor's type (ggml.h); of others only the beginning is known."""
 
 
-class KnownFile(NamedTuple):
+class _KnownFile(NamedTuple):
     """A file of a model that has been tried here."""
 
     model: str
@@ -35,13 +35,13 @@ class KnownFile(NamedTuple):
 
 
 KNOWN = {
-    "1d9614638d18024d0fbb36575a15f1302a3adf044df10345688ec4f6e1c4ff32": KnownFile(
+    "1d9614638d18024d0fbb36575a15f1302a3adf044df10345688ec4f6e1c4ff32": _KnownFile(
         "Qwen2.5-Coder-0.5B-Instruct, Q4_K_M", "Qwen, Alibaba Cloud"
     ),
-    "cc324af070c2ecbfd324a30884d2f951a7ff756aba85cb811a6ec436933bb046": KnownFile(
+    "cc324af070c2ecbfd324a30884d2f951a7ff756aba85cb811a6ec436933bb046": _KnownFile(
         "Qwen2.5-Coder-1.5B-Instruct, Q4_K_M", "Qwen, Alibaba Cloud"
     ),
-    "b179c9523d0e6a0f98a330c7562b682750a6f8c8c15e5bc70ea373728110db53": KnownFile(
+    "b179c9523d0e6a0f98a330c7562b682750a6f8c8c15e5bc70ea373728110db53": _KnownFile(
         "SmolLM2-135M-Instruct, Q4_1", "Hugging Face"
     ),
 }

@@ -56,9 +56,7 @@ def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
         raise UserError(f"{out} cannot be written ({error.strerror}); choose another --out") from error
 
 
-def write_config(
-    target: Path, net: str, routes: str, sumo: Sumo, *, ground: str = "", begin_s: float = 0.0, edges: int = 0
-) -> None:
+def write_config(target: Path, net: str, routes: str, sumo: Sumo, *, ground: str = "", edges: int = 0) -> None:
     """Writes the ``.sumocfg``, which runs in sumo-gui as the scenario runs here.
 
     Other vehicles reroute, and push through a junction blocked for 20 s, because random traffic otherwise locks up.
@@ -66,7 +64,7 @@ def write_config(
     """
     sections: dict[str, dict[str, object]] = {
         "input": {"net-file": net, "route-files": routes},
-        "time": {"begin": begin_s, "step-length": sumo.step_length_s},
+        "time": {"begin": 0.0, "step-length": sumo.step_length_s},
         "processing": {
             "default.action-step-length": sumo.action_step_length_s,
             "scale": sumo.scale,
@@ -102,11 +100,10 @@ def write_scenario(
     time_zone: str,
     sumo: Sumo,
     trips: Sequence[Trip],
-    start: datetime = START,
 ) -> None:
-    """Writes ``scenario.toml``; ``start`` is local."""
+    """Writes ``scenario.toml``."""
     blocks: list[str | dict[str, object]] = [
-        {"name": name, "title": title, "about": about, "country": country, "time_zone": time_zone, "start": start},
+        {"name": name, "title": title, "about": about, "country": country, "time_zone": time_zone, "start": START},
         "[sumo]",
         asdict(sumo),
         "[ego]",

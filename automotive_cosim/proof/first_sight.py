@@ -156,7 +156,7 @@ _MATTERS: Mapping[str, frozenset[Facet]] = {
     "cold": frozenset({Facet.WEATHER}),
     "heat": frozenset({Facet.WEATHER}),
 }
-"""What decides whether a topic can matter here and now (``geo.relevance``), or is left to a query; of all others,
+"""What decides whether a topic can matter here and now, or is left to a query; of all others,
 the kind of road does."""
 
 

@@ -614,7 +614,7 @@ def _moves(situation: Situation) -> bool:
     match situation:
         case Situation("driving" | "headway_below"):
             return True
-        case Situation("speed_above" | "speed_between" | "over_posted", (float() | int() as more_than, *_)):
+        case Situation("speed_above" | "speed_between", (float() | int() as more_than, *_)):
             return more_than >= 0
     return False
 

@@ -15,7 +15,7 @@ from automotive_cosim.proof import gates
 from automotive_cosim.proof.functions import functions_are_not_enough, functions_win
 from automotive_cosim.proof.hand_over import Ground
 from automotive_cosim.proof.house_rules import policy
-from automotive_cosim.run.row import JobRow, Volatile
+from automotive_cosim.run.job_row import JobRow, Volatile
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.future import KnownDrives

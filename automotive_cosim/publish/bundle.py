@@ -25,8 +25,8 @@ from automotive_cosim.formats.writing import copy, drafted, make_folder, write_w
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import FORMAT, NAME, Contents, counts
 from automotive_cosim.run.coverage import coverage
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.moments import judged_file
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import TrialRow, read_trials
 from automotive_cosim.run.store import read_evaluation, read_trace, trace_file, write_trace
 from automotive_cosim.run.versions import ran_with

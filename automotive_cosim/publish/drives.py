@@ -11,8 +11,8 @@ from automotive_cosim.drives.harm import distraction_s
 from automotive_cosim.episode.specification import End
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.run.drive import JudgedDrive
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.moments import read_judged
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.store import read_trace, trace_file
 

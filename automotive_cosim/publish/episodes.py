@@ -25,9 +25,9 @@ from automotive_cosim.run.coverage import is_outdated
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import IN_RESULT, EpisodeSetup
 from automotive_cosim.run.figures import alerts, driver_load, pixel_taps, questioned
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.regrade import judged_again
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, PartsHeld, TrialRow
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialSetup

@@ -24,10 +24,10 @@ from automotive_cosim.models.replay import Replay
 from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.run.drive import DriveSetup, JudgedDrive
+from automotive_cosim.run.job_row import as_json, steady
 from automotive_cosim.run.moments import Judged, in_its_fields, judged_file, read_judged
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.rerun import Player, Recorded, compare, of_drive, played, played_together
-from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.rows import DriveTrialRow, TrialRow
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial import TrialRun, TrialSetup

@@ -35,9 +35,9 @@ from automotive_cosim.publish.replays import Replayed, replay, replay_fleet
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.hidden import COMMITTED, commitment
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.plan import Plan, make_plan
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import TrialRow, read_trials
 from automotive_cosim.run.settings import HIDDEN
 from automotive_cosim.run.store import read_evaluation, trace_file

@@ -30,7 +30,7 @@ from automotive_cosim.report.summary import PUBLISHED, errors, outdated, progres
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
 from automotive_cosim.run.trial_folder import pictures, shown

@@ -21,7 +21,7 @@ from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.attribution import path_of, read_effects
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.trial_folder import read_steps, read_trial
 

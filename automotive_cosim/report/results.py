@@ -14,8 +14,8 @@ from automotive_cosim.contracts.plain import counted, model_and_options
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.run.coverage import Coverage, coverage
+from automotive_cosim.run.job_row import columns
 from automotive_cosim.run.plan import languages_in_words, make_plan
-from automotive_cosim.run.row import columns
 from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, TrialRow, read_trials
 from automotive_cosim.run.store import read_evaluation
 from automotive_cosim.run.versions import ran_with

@@ -110,28 +110,26 @@ def distributions() -> Any:
     return stats
 
 
-def upper_bound(count: int, total: int, confidence: float = CONFIDENCE) -> float:
+def upper_bound(count: int, total: int) -> float:
     """The one-sided upper bound of a rate (Clopper and Pearson 1934, Biometrika 26); 3 / total if none was seen.
 
     Raises ValueError: total is not above 0, or count is not between 0 and total."""
     if total <= 0 or not 0 <= count <= total:
         raise ValueError(f"{count} of {total}")
-    return 1.0 if count == total else float(distributions().beta.ppf(confidence, count + 1, total - count))
+    return 1.0 if count == total else float(distributions().beta.ppf(CONFIDENCE, count + 1, total - count))
 
 
-def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE) -> float:
+def rate_upper_bound(count: int, exposure: float) -> float:
     """The one-sided upper bound of a rate of independent events, as per hour (Garwood 1936,
     Biometrika 28); 3 / exposure if none was seen.
 
     Raises ValueError: exposure is not above 0, or count is below 0."""
     if exposure <= 0 or count < 0:
         raise ValueError(f"{count} in {exposure}")
-    return float(distributions().chi2.ppf(confidence, 2 * count + 2)) / 2 / exposure
+    return float(distributions().chi2.ppf(CONFIDENCE, 2 * count + 2)) / 2 / exposure
 
 
-def rate(
-    outcomes: Iterable[tuple[Hashable, bool | None]], not_run: int = 0, confidence: float = CONFIDENCE
-) -> Rate:
+def rate(outcomes: Iterable[tuple[Hashable, bool | None]], not_run: int = 0) -> Rate:
     """A rate with Wilson's interval at the effective sample size (Korn and Graubard 1998, Survey Methodology 24).
 
     Args:
@@ -147,7 +145,7 @@ def rate(
     if ran == errors:
         return Rate(0, 0, errors, None, not_run)
     size = effective_size(groups)
-    return Rate(successes, ran - errors, errors, wilson(successes / ran * size, size, confidence), not_run)
+    return Rate(successes, ran - errors, errors, wilson(successes / ran * size, size), not_run)
 
 
 def effective_size(clusters: Sequence[Sequence[bool]]) -> float:

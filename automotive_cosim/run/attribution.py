@@ -23,8 +23,8 @@ from automotive_cosim.formats.writing import make_folder, write_whole
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.run.effect import NO_ACT, ActEffect, compared, judged_without, weighed
 from automotive_cosim.run.forks import ForkedAct, Forks, forked
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.run.rerun import recorded
-from automotive_cosim.run.row import from_json
 from automotive_cosim.run.trial_folder import is_trial
 from automotive_cosim.traffic.fork import Simulations
 

@@ -24,10 +24,10 @@ from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run import worker
 from automotive_cosim.run.budget import MeterHandle, Spent
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Runner, Worker, failed
+from automotive_cosim.run.job_row import JobRow, from_json
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue, SimulationKey
-from automotive_cosim.run.row import JobRow, from_json
 from automotive_cosim.run.rows import TrialRow, kind_of
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import RowKind, Store, cannot_write, opened

@@ -34,8 +34,8 @@ from automotive_cosim.run.figures import (
     pixel_taps,
     questioned,
 )
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.moments import Judged
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import EpisodeRow, PartsHeld, TrialRow
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.run.trial import Answers, TrialSetup

@@ -18,7 +18,7 @@ from typing import Any, Protocol, TypeVar
 
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.budget import MeterHandle, Spent
-from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.job_row import JobRow
 from automotive_cosim.run.settings import Budget
 
 

@@ -43,8 +43,8 @@ from automotive_cosim.formats.writing import (
 )
 from automotive_cosim.interface.trace import STATES, digests
 from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.moments import JudgeInput, write_judged
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import TrialRow
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.run.trial import Shot, TrialObserver, TrialSetup

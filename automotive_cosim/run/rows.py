@@ -20,7 +20,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.measures.exposure import ExposureCell
 from automotive_cosim.measures.following import FollowingFigures
 from automotive_cosim.run.figures import DriveFigures, PixelTaps
-from automotive_cosim.run.row import InColumns, JobRow, Volatile
+from automotive_cosim.run.job_row import InColumns, JobRow, Volatile
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.sets import Split, Suite

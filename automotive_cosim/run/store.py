@@ -29,7 +29,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
 from automotive_cosim.formats.layout import DUE, PICTURES, TRACES
 from automotive_cosim.formats.writing import add_line, growing, locked, make_folder, write_whole
-from automotive_cosim.run.row import R, as_json, from_line
+from automotive_cosim.run.job_row import R, as_json, from_line
 from automotive_cosim.run.versions import PACKAGE, STAMPED, installed
 from automotive_cosim.scenarios.opening import own_files
 

@@ -64,7 +64,7 @@ class RandomSampler:
         """Learns nothing."""
 
 
-class EvenSampler:
+class _EvenSampler:
     """Spreads its points evenly: Sobol's sequence, scrambled, or a Latin hypercube (scipy.stats.qmc)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator, *, latin: bool = False) -> None:
@@ -93,7 +93,7 @@ class EvenSampler:
         """Learns nothing."""
 
 
-class GridSampler:
+class _GridSampler:
     """Takes every value of every list with the middles of equal parts of every range, in random order."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
@@ -130,12 +130,12 @@ def _most_parts(factor: Factor) -> int:
     return round(factor.most - factor.least) + 1 if factor.whole else 1000
 
 
-class ClimbSampler:
+class _ClimbSampler:
     """Spreads points evenly, then takes steps from the worst ones: one factor or two at a time."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
         even = max(min(budget, LEAST_EVEN), round(SHARE * min(budget, 64)))
-        self._space, self._rng, self._even = space, rng, EvenSampler(space, even, rng)
+        self._space, self._rng, self._even = space, rng, _EvenSampler(space, even, rng)
         self._left = even
         self._known: dict[Any, tuple[float, SearchPoint]] = {}
 
@@ -171,7 +171,7 @@ class ClimbSampler:
         return made
 
 
-class CmaSampler:
+class _CmaSampler:
     """Spreads points evenly, then adapts a normal distribution to the worst one (CMA-ES, ``cma``)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
@@ -182,7 +182,7 @@ class CmaSampler:
             raise SetupError(NEEDS.format("cma")) from missing
         self._make: Callable[..., Any] = cma.CMAEvolutionStrategy
         even = max(min(budget, LEAST_EVEN), round(SHARE * min(budget, 64)))
-        self._space, self._rng, self._even, self._left = space, rng, EvenSampler(space, even, rng), even
+        self._space, self._rng, self._even, self._left = space, rng, _EvenSampler(space, even, rng), even
         self._strategy: Any = None
         self._asked: list[list[float]] = []
         self._told: list[tuple[list[float], float]] = []
@@ -213,7 +213,7 @@ class CmaSampler:
                 self._asked = []
 
 
-class BayesSampler:
+class _BayesSampler:
     """Models which values fail (tree-structured Parzen estimators, ``optuna``)."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
@@ -253,17 +253,17 @@ def _value(factor: Factor, given: Any) -> FactorValue:
 
 
 def _latin(space: Space, budget: int, rng: np.random.Generator) -> Sampler:
-    return EvenSampler(space, budget, rng, latin=True)
+    return _EvenSampler(space, budget, rng, latin=True)
 
 
 SAMPLERS: Mapping[str, Callable[[Space, int, np.random.Generator], Sampler]] = {
-    "climb": ClimbSampler,
+    "climb": _ClimbSampler,
     "random": RandomSampler,
-    "sobol": EvenSampler,
+    "sobol": _EvenSampler,
     "lhs": _latin,
-    "grid": GridSampler,
-    "cma": CmaSampler,
-    "bayes": BayesSampler,
+    "grid": _GridSampler,
+    "cma": _CmaSampler,
+    "bayes": _BayesSampler,
 }
 """By name."""
 

@@ -24,8 +24,8 @@ from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.effect import ActEffect
 from automotive_cosim.run.extensions import kind_of
 from automotive_cosim.run.fleet_record import fleets_in
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.run.road import FORMAT, read_road
-from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, trace_file
 from automotive_cosim.run.trial_folder import READ, is_trial, read_steps, read_trial, trace_of

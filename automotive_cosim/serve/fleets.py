@@ -9,7 +9,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.report.drives import OF_A_CAR, shown_car
 from automotive_cosim.run.fleet_record import FAILS, fleets_in, read_fleet
-from automotive_cosim.run.row import as_json
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.rows import DriveTrialRow, read_trials
 from automotive_cosim.run.store import read_manifest
 from automotive_cosim.serve.records import NotHereError

@@ -22,8 +22,8 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.job_row import R
 from automotive_cosim.run.plan import Plan
-from automotive_cosim.run.row import R
 from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow
 from automotive_cosim.run.store import Store, opened, read_rows, replan
 from automotive_cosim.run.trial import HUMAN, Limits

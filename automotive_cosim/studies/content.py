@@ -15,7 +15,7 @@ from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
-from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.job_row import JobRow
 from automotive_cosim.run.store import cannot_write, read_manifest, read_rows
 from automotive_cosim.studies.plan import plan_of
 from automotive_cosim.studies.settings import HOME, NETWORKS, RerouteSettings

@@ -14,7 +14,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.tables import Table, TableRow
-from automotive_cosim.run.row import JobRow, steady
+from automotive_cosim.run.job_row import JobRow, steady
 from automotive_cosim.run.store import read_manifest
 from automotive_cosim.studies.congestion.results import CongestionStudy, delay_h
 from automotive_cosim.studies.congestion.words import name_of

@@ -19,7 +19,7 @@ from automotive_cosim.geo.text import KM_PER_MILE, amount_of_speed
 from automotive_cosim.tasking.task import Basis, Half
 from automotive_cosim.tasking.triggers import All, Not, Situation, TriggerCondition
 
-ABOUT_SIGNS = frozenset(("speed_above", "over_posted", "lower_limit_within", "in_school_zone"))
+ABOUT_SIGNS = frozenset(("speed_above", "lower_limit_within", "in_school_zone"))
 """Conditions on a posted limit."""
 
 
@@ -101,8 +101,6 @@ def _may_hold(condition: TriggerCondition, road: Road) -> bool:
             return bool(road.lane_count >= count)
         case Situation("in_school_zone"):
             return road.school_zone
-        case Situation("over_posted"):
-            return limit_mps is not None
         case Situation("speed_above", (_, from_kmh, to_kmh)):
             return limit_mps is not None and from_kmh <= round(limit_mps * KMH_PER_MPS, 1) <= to_kmh
         case _:

@@ -15,8 +15,8 @@ Conditions are joined by ``and``, ``or``, ``not`` and brackets:
     GLASS.WINDSHIELD_FOG > 0.3 and driving and not in_tunnel              of triggers alone
     alert_given(speed, 50) and entered(messages.sent, {to: "Bea", text: "Yes"})
 
-Every other condition is the name of its function or class in small letters, with its values in brackets, in order
-or by name.
+Every other condition is the name of its function, in ``triggers`` or, of goals, in ``checks``, ``history`` or
+``effects``, with its values in brackets, in order or by name.
 ``{name}`` stands for a drawn value, ``{name.column}`` for what it means (``reading``); texts are in double quotes.
 """
 

@@ -158,13 +158,6 @@ def speed_between(moment: Moment, from_kmh: float, to_kmh: float = ANY) -> bool:
     return from_kmh < moment.driving.speed_mps * KMH_PER_MPS <= to_kmh
 
 
-@situation("{share:.0%} above the posted limit")
-def over_posted(moment: Moment, share: float) -> bool:
-    """Faster than the posted limit by a share of it."""
-    limit_mps = moment.driving.road.limit.posted_mps
-    return limit_mps is not None and moment.driving.speed_mps > (1 + share) * limit_mps
-
-
 # --- the road that the car is on, and what comes next on it ---
 
 
@@ -249,12 +242,6 @@ def lower_limit_within(moment: Moment, distance_m: float) -> bool:
     )
 
 
-@situation("within {distance_m:g} m of the goal")
-def goal_within(moment: Moment, distance_m: float) -> bool:
-    """No more than a distance is left of the route."""
-    return moment.driving.ahead.route_left_m <= distance_m
-
-
 @situation("the remaining route is longer than the range")
 def out_of_range(moment: Moment) -> bool:
     """The battery does not last to the destination."""
@@ -275,13 +262,6 @@ def headway_below(moment: Moment, seconds: float) -> bool:
     """Closer behind the leader than a number of seconds, while moving."""
     leader, speed_mps = moment.driving.around.leader, moment.driving.speed_mps
     return leader is not None and speed_mps > WALKING_MPS and leader.gap_m < seconds * speed_mps
-
-
-@situation("{seconds:g} s from hitting the car in front")
-def collision_within(moment: Moment, seconds: float) -> bool:
-    """The leader would be hit within a number of seconds if both kept their speed."""
-    leader = moment.driving.around.leader
-    return leader is not None and leader.time_to_collision_s is not None and leader.time_to_collision_s < seconds
 
 
 @situation("a car in front within {distance_m:g} m")
@@ -312,13 +292,6 @@ def leader_brakes(moment: Moment, distance_m: float, lit: bool = True) -> bool:
     """A vehicle in front within a distance, whose brake lamps are lit, or are not."""
     leader = moment.driving.around.leader
     return leader is not None and leader.is_braking is lit and leader.gap_m <= distance_m
-
-
-@situation("a car behind within {distance_m:g} m")
-def follower_within(moment: Moment, distance_m: float) -> bool:
-    """A vehicle behind within a distance."""
-    follower = moment.driving.around.follower
-    return follower is not None and follower.gap_m <= distance_m
 
 
 @situation("an oncoming car within {distance_m:g} m")
@@ -406,12 +379,6 @@ def dark(moment: Moment, dark: bool = True) -> bool:
 def in_country(moment: Moment, code: str) -> bool:
     """In a country (ISO 3166-1 code)."""
     return moment.context.country == code
-
-
-@situation("no GPS")
-def gps_lost(moment: Moment) -> bool:
-    """The receiver has no fix."""
-    return moment.gps is not None and not moment.gps.has_fix
 
 
 @situation("no connection")

@@ -42,16 +42,13 @@ class Convoy:
         return drive
 
     def send(self, car: str, plan: EgoPlan) -> None:
-        """See ``World.send``."""
         self._world.send(car, plan)
 
     def equip(self, car: str, plan: EgoPlan) -> EgoLoop:
-        """See ``World.equip``."""
         drive = self._drives[car] = self._world.equip(car, plan)
         return drive
 
     def forget(self, car: str) -> None:
-        """See ``World.forget``."""
         self._drives.pop(car, None)
         self._world.forget(car)
 

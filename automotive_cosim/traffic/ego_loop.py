@@ -93,7 +93,6 @@ class EgoLoop:
         return self._driver.state
 
     def react_anew(self, seed: int) -> None:
-        """See ``Driver.react_anew``."""
         self._driver.react_anew(seed)
 
     def proceed(self, now: Instant, events: tuple[Event, ...]) -> tuple[Event, ...]:

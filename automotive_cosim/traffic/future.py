@@ -208,7 +208,6 @@ class KnownDrives:
 
     @contextmanager
     def held(self, scenario: Scenario, seed: int, progress: WarmUpProgress | None = None) -> Iterator[_Departures]:
-        """See ``Simulations.held``."""
         with self._simulations.held(scenario, seed, progress) as simulation:
             yield _Departures(self, simulation, scenario, seed)
 
@@ -242,7 +241,6 @@ class _Departures:
     seed: int
 
     def depart(self, plan: EgoPlan) -> Traffic:
-        """See ``Simulation.depart``."""
         return self.known.future(self.simulation, self.scenario, self.seed, plan).drive(plan.seed)
 
     def close(self) -> None:

@@ -58,7 +58,6 @@ class Incidents:
 
     @property
     def slowed(self) -> dict[str, float]:
-        """See ``Signs.slowed``."""
         return self._tools.signs.slowed
 
     def move(self, start: datetime) -> None:

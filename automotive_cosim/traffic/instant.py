@@ -75,7 +75,6 @@ class KnownInstant:
 
     @property
     def packed(self) -> Packed:
-        """See ``Instant.packed``."""
         return pack_state(self.state)
 
 

@@ -275,7 +275,7 @@ class SumoPedals:
         return tuple(near[: STREET_CANDIDATES + 1])
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """See ``drive.Road``; empty inside a junction."""
+        """Empty inside a junction."""
         if self._sumo.edge_of(self._ego).startswith(":"):
             return ()
         fixed = len(self._fixed()[1])

@@ -392,7 +392,6 @@ class World:
         self._has_incidents = True
 
     def closed(self) -> tuple[str, ...]:
-        """See ``Incidents.closed``."""
         return self._incidents.closed
 
     def slowed(self) -> dict[str, float]:

@@ -13,7 +13,7 @@ from automotive_cosim.interface.controls import SPOTS, GeoInput, unrelated
 from automotive_cosim.interface.observe import ALL
 from automotive_cosim.models.skills import SKILLS
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.row import as_json
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.trial import run_trial
 
 QUICK = {"task": "hvac_fan_max", "scenario": "grid"}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import install_hint
-from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.job_row import JobRow
 from automotive_cosim.run.store import opened, read_trace, write_trace
 
 GRID = ("--tasks", "hvac_fan_max", "--scenarios", "grid")

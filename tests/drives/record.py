@@ -25,7 +25,7 @@ from automotive_cosim.drives.events.errands import UNASKED
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import facts_of
 from automotive_cosim.drives.script import APART_S, script_json
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.traffic.fork import Simulations
 
 FILE = Path(__file__).with_name("record.json.xz")

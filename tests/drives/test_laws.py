@@ -16,7 +16,7 @@ from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import NOT_DUE, ORDER, Judgement, Worth, judge
 from automotive_cosim.drives.score import Score, score
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.record import Recorded, came_off, outdated, recorded
 from tests.drives.record import drive as drive_of

@@ -12,7 +12,7 @@ from automotive_cosim.run import difficulty as record
 from automotive_cosim.run.choosing import choose
 from automotive_cosim.run.difficulty import Difficulty, Outcomes, WonBy
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.row import as_json
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.tasking.fingerprint import fingerprint
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE

@@ -25,10 +25,10 @@ from automotive_cosim.publish.episodes import BY_REPLAY, ON_TRUST, check_trial
 from automotive_cosim.publish.problems import ROWS
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.publish.verify import PLAN_ON_TRUST, STARTS_ON_TRUST, _read, hash_problems, verify
+from automotive_cosim.run.job_row import from_line
 from automotive_cosim.run.moments import Judged, read_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import judged_again
-from automotive_cosim.run.row import from_line
 from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import opened, read_evaluation, read_rows, read_trace, write_trace

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from automotive_cosim.run.episode import IN_RESULT, EpisodeSetup
-from automotive_cosim.run.row import as_json
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.trial_folder import shown
 
 

@@ -2,7 +2,7 @@
 
 from automotive_cosim.report.house_rules import house_rules
 from automotive_cosim.report.results import contestant
-from automotive_cosim.run.row import columns
+from automotive_cosim.run.job_row import columns
 from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.task import Dimension, Module

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from automotive_cosim.report.plot import Plot, SpeedAxis
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.run.timeline import Sample
 
 samples = st.lists(

@@ -16,12 +16,12 @@ from automotive_cosim.interface.trace import sha256
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_jobs, run_plan
 from automotive_cosim.run.executor import LostError
+from automotive_cosim.run.job_row import steady as steady_part
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue
 from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.road import read_record
-from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import opened, read_rows, read_trace, trace_file

@@ -21,9 +21,9 @@ from automotive_cosim.models import ChatMessage, ModelReply
 from automotive_cosim.models.turns import LocalTurns
 from automotive_cosim.run.batch import SPENT, run_plan, spent_before
 from automotive_cosim.run.budget import Meter, MeterClient, Metered, Spent, served
+from automotive_cosim.run.job_row import steady
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.row import steady
 from automotive_cosim.run.rows import EpisodeRow
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.store import read_rows

@@ -13,8 +13,8 @@ from automotive_cosim.publish.leaderboard import COLUMNS, DRIVE_COLUMNS
 from automotive_cosim.report.findings import by_condition
 from automotive_cosim.report.results import Results
 from automotive_cosim.run.coverage import Coverage
+from automotive_cosim.run.job_row import as_json, columns, from_line
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.row import as_json, columns, from_line
 from automotive_cosim.run.rows import EpisodeRow
 from tests.laws import over
 

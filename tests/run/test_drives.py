@@ -37,6 +37,7 @@ from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.job_row import as_json, from_json, steady
 from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.record import Recorder
@@ -44,7 +45,6 @@ from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.rerun import Recorded, compare, played, rerun
 from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadRecorder
-from automotive_cosim.run.row import as_json, from_json, steady
 from automotive_cosim.run.rows import DriveTrialRow
 from automotive_cosim.run.store import read_rows, read_trace
 from automotive_cosim.run.trial import run_trial

@@ -29,10 +29,10 @@ from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.fleet import record_of, run_fleet
 from automotive_cosim.run.fleet_record import read_fleet
 from automotive_cosim.run.fork_server import ForkServer
+from automotive_cosim.run.job_row import as_json, steady
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.rerun import rerun
-from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.rows import DriveTrialRow, FleetRow
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import read_rows, read_trace, write_trace

@@ -15,9 +15,9 @@ import pytest
 
 from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.run.batch import SPENT, run_plan
+from automotive_cosim.run.job_row import steady as steady_part
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow
 from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import read_rows, stamp

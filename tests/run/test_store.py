@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.job_row import JobRow
 from automotive_cosim.run.store import (
     opened,
     own_code,
@@ -101,7 +101,7 @@ def test_a_broken_line_in_the_middle_is_named(tmp_path):
 @pytest.mark.slow
 def test_two_evaluations_in_one_folder_are_refused(program, tmp_path):
     script = (
-        "import sys, pathlib; from automotive_cosim.run.row import JobRow\n"
+        "import sys, pathlib; from automotive_cosim.run.job_row import JobRow\n"
         "from automotive_cosim.run.store import opened\n"
         f"with opened(pathlib.Path(sys.argv[1]), {PLAN!r}, JobRow): print('in', flush=True); sys.stdin.read()"
     )

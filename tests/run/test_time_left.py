@@ -16,7 +16,7 @@ from automotive_cosim.run import batch
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.budget import Spent
 from automotive_cosim.run.executor import JobPhase
-from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.job_row import JobRow
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.trial import WARM_UP_S, WARM_UPS_S
 

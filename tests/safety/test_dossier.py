@@ -18,8 +18,8 @@ from automotive_cosim.formats.layout import STEPS, TRIAL
 from automotive_cosim.measures.exposure import ExposureCell
 from automotive_cosim.measures.following import FollowingFigures
 from automotive_cosim.report.stats import rate_upper_bound
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.store import opened
 from automotive_cosim.safety.dossier.claims import claims

@@ -17,8 +17,8 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import DUE
 from automotive_cosim.report.results import read_results
 from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.plan import Plan, make_plan
-from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import DriveTrialRow, TrialRow
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.trial import TrialSetup, run_trial

@@ -37,7 +37,7 @@ BRAKE_LIGHT_MPS2 = 0.5
 
 
 class ScriptedCar:
-    """Moves step by step and provides the driver's pedals (``drive.Road`` and ``pedals.Pedals``)."""
+    """Moves step by step and provides the driver's pedals (``ego_loop.Stepper`` and ``pedals.Pedals``)."""
 
     def __init__(
         self,
@@ -70,7 +70,6 @@ class ScriptedCar:
         self.now = KnownInstant(self._sense(hazard_lights=False))
 
     def step(self, *, hazard_lights: bool) -> tuple[KnownInstant, tuple[Event, ...]]:
-        """See ``drive.Road``."""
         before_mps = self._speed_mps
         self._speed_mps = self._next_speed()
         self._along_m += self._speed_mps * self.step_s
@@ -96,7 +95,6 @@ class ScriptedCar:
         return ()
 
     def look(self) -> RoadSnapshot:
-        """See ``drive.Stepper``."""
         stretch, state = self._layout.stretches[self._index], self.now.state
         braking = SumoSignal.BRAKE if self._acceleration_mps2 < -BRAKE_LIGHT_MPS2 else 0
         hazards = SumoSignal.HAZARD if state.hazard_lights else 0
@@ -110,14 +108,12 @@ class ScriptedCar:
         return RoadSnapshot(state.time_s, tuple(seen), ())
 
     def shapes(self) -> RoadShapes:
-        """See ``drive.Stepper``."""
         edges = self._layout.network.edges.values()
         return RoadShapes(tuple(LaneShape(edge.lane_ids[0], "road", LANE_M, edge.shape_m) for edge in edges), ())
 
     # --- pedals -------------------------------------------------------------------------------------------
 
     def set_speed_factor(self, factor: float) -> None:
-        """See ``pedals.Pedals``."""
         self._factor = factor
 
     def set_top_speed(self, speed_mps: float) -> None:
@@ -172,7 +168,6 @@ class ScriptedCar:
         return False
 
     def standing_ahead_m(self) -> float | None:
-        """See ``pedals.Pedals``."""
         return self._layout.route.standing_ahead_m(self._along_m)
 
     def leave_corridor(self, leave: bool) -> str:

@@ -103,31 +103,24 @@ class ScriptedTraffic:
         """See ``Traffic.start``; does nothing."""
 
     def advance(self, duration_s: float) -> Advance:
-        """See ``Traffic.advance``."""
         return self._open().advance(duration_s)
 
     def request(self, request: RoadRequest) -> Answer:
-        """See ``Traffic.request``."""
         return self._open().request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
         return self._open().alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
         return self._open().look()
 
     def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
         return self._open().shapes()
 
     def branch(self) -> ScriptedTraffic:
-        """See ``Traffic.branch``."""
         return ScriptedTraffic(copy.deepcopy(self._open()), self._network)
 
     def close(self) -> None:
-        """See ``Traffic.close``."""
         self._is_closed = True
 
     def _open(self) -> EgoLoop:

@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from automotive_cosim.formats.layout import LIVE, WATCHED
-from automotive_cosim.run.row import as_json
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.rows import EpisodeRow, PartsHeld
 from automotive_cosim.run.trial_folder import shown
 from automotive_cosim.serve.play import Game

@@ -13,7 +13,7 @@ from automotive_cosim.contracts import DrivingState, Observation, Reroute, Route
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.executor import tried
 from automotive_cosim.run.fleet_record import read_fleet
-from automotive_cosim.run.row import as_json
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.store import FORMAT
 from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.studies.adoption import adoption

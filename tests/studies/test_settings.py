@@ -7,7 +7,7 @@ from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, Decis
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
 from tests.cli.test_derived import is_option, settings_of
 from tests.laws import over
-from tests.run.test_row import comes_back, required_of
+from tests.run.test_job_row import comes_back, required_of
 
 COMMANDS: tuple[tuple[str, type, set[str]], ...] = (
     ("scenarios equilibrate", EquilibriumSettings, {"seed"}),

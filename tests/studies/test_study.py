@@ -24,9 +24,9 @@ from automotive_cosim.formats.writing import mark_as_written
 from automotive_cosim.report.files import write_files
 from automotive_cosim.run.attribution import sentence
 from automotive_cosim.run.batch import Progress
+from automotive_cosim.run.job_row import steady as steady_part
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.road import read_record
-from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies import intervals, load_study
 from automotive_cosim.studies.calls.chance import Fresh

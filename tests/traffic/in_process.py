@@ -114,32 +114,26 @@ class InProcessTraffic:
         """See ``Traffic.start``; does nothing."""
 
     def advance(self, duration_s: float) -> Advance:
-        """See ``Traffic.advance``."""
         self._check()
         return self._drive.advance(duration_s)
 
     def request(self, request: RoadRequest) -> Answer:
-        """See ``Traffic.request``."""
         self._check()
         return self._drive.request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
         self._check()
         return self._drive.alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
         self._check()
         return self._drive.look()
 
     def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
         self._check()
         return self._drive.shapes()
 
     def close(self) -> None:
-        """See ``Traffic.close``."""
         self._owner = None
 
     def _check(self) -> InProcess:

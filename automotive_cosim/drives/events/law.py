@@ -61,10 +61,10 @@ def may_say(context: GeoContext, topic: str, word: str) -> bool:
     )
 
 
-def grows(drive: Sequence[Moment], path: str, by: float, within_s: float = TREND_S) -> bool:
+def grows(drive: Sequence[Moment], path: str, by: float) -> bool:
     """Whether a signal has grown at least by so much within the last seconds of a drive, or since it began; with a
     negative ``by``, whether it has fallen."""
-    change = float(drive[-1].signals[path]) - float(before(drive, within_s).signals[path])
+    change = float(drive[-1].signals[path]) - float(before(drive, TREND_S).signals[path])
     return change >= by if by > 0 else change <= by
 
 

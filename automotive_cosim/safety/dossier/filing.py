@@ -11,7 +11,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import beneath, copy, drafted, make_folder, remove, write_whole
 from automotive_cosim.report.templates import render
-from automotive_cosim.run.row import as_json
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.safety.dossier.document import Dossier, dossier
 from automotive_cosim.safety.dossier.subject import read_subject

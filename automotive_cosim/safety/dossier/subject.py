@@ -16,7 +16,7 @@ from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.coverage import Coverage
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.run.rows import DriveTrialRow, EpisodeRow, TrialRow
 from automotive_cosim.run.trial_folder import is_trial, read_trial
 from automotive_cosim.safety.findings import of_due
@@ -265,6 +265,6 @@ def number_told(value: float) -> str:
     return f"{value:,.0f}" if value >= 10 else rounded(value, 2)
 
 
-def fact_table(name: str, title: str, lines: Iterable[tuple[str, str]], note: str = "") -> Table:
+def fact_table(name: str, title: str, lines: Iterable[tuple[str, str]]) -> Table:
     """A table of facts and their values."""
-    return Table(name, title, ("Fact", "Value"), tuple(lines), note, heads=2)
+    return Table(name, title, ("Fact", "Value"), tuple(lines), heads=2)

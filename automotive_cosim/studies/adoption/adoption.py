@@ -37,7 +37,7 @@ from automotive_cosim.models import ChatModel
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import alone, doing, warming_up
 from automotive_cosim.run.fleet_record import FAILS, FleetRecord
-from automotive_cosim.run.row import JobRow, columns
+from automotive_cosim.run.job_row import JobRow, columns
 from automotive_cosim.run.script import read_script
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.wording import KINDS, read_line

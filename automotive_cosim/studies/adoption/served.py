@@ -8,7 +8,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.run.fleet_record import FAILS, fleets_in
-from automotive_cosim.run.row import as_json
+from automotive_cosim.run.job_row import as_json
 from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.studies.adoption.adoption import AdoptionStudy, fleet_id
 from automotive_cosim.studies.adoption.page import COLUMNS, shown_car

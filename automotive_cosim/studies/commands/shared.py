@@ -17,7 +17,7 @@ from automotive_cosim.errors import InfrastructureError
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
-    from automotive_cosim.run.row import JobRow
+    from automotive_cosim.run.job_row import JobRow
     from automotive_cosim.studies.settings import TrafficSettings
 
 StudyFolder = Annotated[
@@ -54,7 +54,7 @@ def tell_reading(scenario: str) -> None:
 def raise_errors(errors: Sequence[JobRow], count: int, unit: str) -> None:
     """Raises an ``InfrastructureError`` that tells the first of the errors, if there are any."""
     if errors:
-        from automotive_cosim.run.row import remedy
+        from automotive_cosim.run.job_row import remedy
 
         first = errors[0]
         raise InfrastructureError(

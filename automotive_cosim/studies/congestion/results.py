@@ -138,12 +138,10 @@ def delay_h(plan: CongestionPlan, outcome: InterventionOutcome, part: NetworkPar
     return lost_s / HOUR_S / part.hours(plan)
 
 
-def detour_h(
-    plan: CongestionPlan, before: InterventionOutcome, after: InterventionOutcome, part: NetworkPart = WHOLE
-) -> float:
+def detour_h(plan: CongestionPlan, before: InterventionOutcome, after: InterventionOutcome) -> float:
     """Vehicle-hours per hour that what is driven more takes without congestion; negative if less is driven."""
-    free_s = flow_in(plan, after, part).free_s - flow_in(plan, before, part).free_s
-    return free_s / HOUR_S / part.hours(plan)
+    free_s = flow_in(plan, after).free_s - flow_in(plan, before).free_s
+    return free_s / HOUR_S / WHOLE.hours(plan)
 
 
 def throughput_per_h(plan: CongestionPlan, outcome: InterventionOutcome, part: NetworkPart = WHOLE) -> float:

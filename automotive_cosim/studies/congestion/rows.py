@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from automotive_cosim.run.row import InColumns, JobRow
+from automotive_cosim.run.job_row import InColumns, JobRow
 from automotive_cosim.studies.calls.accounts import Consumption
 
 

@@ -28,7 +28,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.writing import make_folder
 from automotive_cosim.run.batch import BatchKind
 from automotive_cosim.run.executor import Job, alone, doing
-from automotive_cosim.run.row import JobRow, columns
+from automotive_cosim.run.job_row import JobRow, columns
 from automotive_cosim.scenarios import Scenario, variant
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.equilibrium.equilibrium import ROUTES, Assigned, rerouted

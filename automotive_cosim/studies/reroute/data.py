@@ -19,7 +19,7 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.formats.files import read_bytes
 from automotive_cosim.formats.writing import drafted, write_whole
-from automotive_cosim.run.row import InColumns, columns
+from automotive_cosim.run.job_row import InColumns, columns
 from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.studies.reroute.policies import chosen, parse_policy
 from automotive_cosim.studies.reroute.results import Study, all_decisions

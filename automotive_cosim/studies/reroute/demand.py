@@ -11,7 +11,7 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.report.tables import Table
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.job_row import from_json
 from automotive_cosim.studies.equilibrium.gap import TAIL_S, Gap, measure
 from automotive_cosim.studies.reroute.plan import StudyPlan
 

@@ -10,7 +10,7 @@ from statistics import fmean, stdev
 import numpy as np
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.run.row import columns
+from automotive_cosim.run.job_row import columns
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.studies.reroute.policies import Policy, drawn_choices, hindsight, parse_policy

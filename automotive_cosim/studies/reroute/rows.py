@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from statistics import fmean
 from typing import Annotated, Any
 
-from automotive_cosim.run.row import InColumns, JobRow
+from automotive_cosim.run.job_row import InColumns, JobRow
 from automotive_cosim.studies.calls.accounts import Consumption, TrafficSummary
 from automotive_cosim.studies.calls.chance import Fresh
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 
 from automotive_cosim.report.tables import Table, TableRecord, TableRow
-from automotive_cosim.run.row import JobRow, remedy
+from automotive_cosim.run.job_row import JobRow, remedy
 from automotive_cosim.studies.calls.chance import Fresh
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.reroute.policies import PolicyRule, parse_policy

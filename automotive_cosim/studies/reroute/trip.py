@@ -63,7 +63,7 @@ def run_drive(
 
     Args:
         simulation: its traffic at the ego's departure, watched.
-        history: measurements of the traffic so far, ``traffic.MEASURED_EVERY_S`` apart.
+        history: measurements of the traffic so far, ``gridlock.MEASURED_EVERY_S`` apart.
         tracks: folder for the ego's tracks in a simulation that keeps them; None leaves them out.
         study: the study's folder, in which it can be watched; None if it cannot.
 

@@ -10,8 +10,8 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.proof.prover import Proof
 from automotive_cosim.run.executor import failed
 from automotive_cosim.run.figures import DriveFigures
+from automotive_cosim.run.job_row import JobRow, as_json, columns, from_json, from_line, steady
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.row import JobRow, as_json, columns, from_json, from_line, steady
 from automotive_cosim.run.rows import EpisodeRow, PartsHeld
 from automotive_cosim.run.store import opened, read_rows
 from automotive_cosim.tasking.task import Basis
