@@ -3,7 +3,8 @@
 json       {"name": ..., "arguments": ...}, one or a list, within a mark or alone: Hermes, Qwen, Llama, Mistral,
            Granite, Phi, Cohere, Hunyuan, Nemotron, xLAM
 headed     a mark, the name, and the arguments as JSON: Llama, Mistral, DeepSeek, Kimi, gpt-oss, Qwen-Agent, ReAct
-tagged     a tag for the function and one for each parameter: Qwen3-Coder, Seed-OSS, MiniMax, GLM, DeepSeek, Grok
+tagged     a tag for the function and one for each parameter: Qwen3-Coder, Seed-OSS, MiniMax, MiniCPM, GLM,
+           LongCat, Hunyuan, DeepSeek, Grok
 pythonic   name(argument=value), in a list, a mark or a block: Llama, Olmo, LFM2, Gemini
 braced     call:name{argument:value}: Gemma
 
@@ -38,16 +39,19 @@ _HEADED = re.compile(
     r"|\u273fARGS\u273f:|Action Input:)*(?=\{)",
     re.MULTILINE,
 )
+_CALL, _KEY, _VALUE = (rf"(?:\w{{1,20}}_)?{tag}(?::\w{{1,20}})?" for tag in ("tool_call", "arg_key", "arg_value"))
+"""Tags of GLM, before which LongCat, and behind which Hunyuan, has a word."""
 _TAGGED = re.compile(
     rf"<(?:\w+:)?(?:function|invoke|function_call)(?:=|\s+name=)[\"']?{_NAME}[\"']?\s*>(?P<body>.*?)"
     r"(?:</(?:\w+:)?(?:function|invoke|function_call)>|</(?:\w+:)?tool_call>)"
-    r"|<tool_call>\s*(?P<glm>[A-Za-z_][\w.-]*)\s*(?P<pairs>(?:<arg_key>.*?</arg_value>\s*)*)</tool_call>",
+    rf"|<{_CALL}>\s*{_NAME.replace('name', 'glm')}\s*(?:<tool_sep(?::\w+)?>\s*)?"
+    rf"(?P<pairs>(?:<{_KEY}>.*?</{_VALUE}>\s*)*)</{_CALL}>",
     re.DOTALL,
 )
 _PARAMETER = re.compile(
-    r"<(?:\w+:)?parameter(?:=|\s+name=)[\"']?([\w.-]+)[\"']?[^<>]*>(.*?)"
-    r"(?:</(?:\w+:)?parameter>|(?=<(?:\w+:)?parameter\b)|\Z)"
-    r"|<arg_key>\s*(.*?)\s*</arg_key>\s*<arg_value>(.*?)</arg_value>",
+    r"<(?:\w+:)?param(?:eter)?(?:=|\s+name=)[\"']?([\w.-]+)[\"']?[^<>]*>((?:\s*<!\[CDATA\[.{0,2000}?\]\]>)?.*?)"
+    r"(?:</(?:\w+:)?param(?:eter)?>|(?=<(?:\w+:)?param(?:eter)?\b)|\Z)"
+    rf"|<{_KEY}>\s*(.*?)\s*</{_KEY}>\s*<{_VALUE}>(.*?)</{_VALUE}>",
     re.DOTALL,
 )
 _BEGUN = re.compile(rf"(?:{_MARKED}\s*)+(?=[{{\[])", re.MULTILINE)
@@ -58,6 +62,8 @@ _PYTHONIC = re.compile(
     re.DOTALL,
 )
 _BRACED = re.compile(rf"\bcall:{_NAME}(?P<braced>\{{.*?\}})(?=\s*<)", re.DOTALL)
+_CDATA = re.compile(r"\s*<!\[CDATA\[(.*?)\]\]>\s*", re.DOTALL)
+_DSML = re.compile(r"[|\uff5c]DSML[|\uff5c]")
 _QUOTES = re.compile(r'<escape>|<\|"\|>')
 
 
@@ -67,7 +73,7 @@ def written(text: str, schemas: Mapping[str, Json]) -> list[WrittenCall]:
     Args:
         schemas: of the parameters, by function; texts in tags become what they say. A call alone, without any mark,
             is one only of these functions."""
-    text = text.replace("\uff5cDSML\uff5c", "")
+    text = _DSML.sub("", text)
     calls: list[WrittenCall] = []
     read = 0
     for at, end, found in sorted(_placed(text, schemas), key=lambda each: (each[0], -each[1])):
@@ -149,6 +155,8 @@ def _parameters(body: str, schema: Json) -> Iterator[tuple[str, object]]:
 
 def _value(text: str, schema: Json) -> object:
     """What a text in a tag says, by its schema."""
+    if whole := _CDATA.fullmatch(text):
+        text = whole[1]
     told = text[1:-1] if text[:1] == text[-1:] == "\n" and len(text) > 1 else text
     plain = told.strip()
     is_text = schema.get("type") == "string"

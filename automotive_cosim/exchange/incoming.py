@@ -23,6 +23,7 @@ import sumolib
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import unread
+from automotive_cosim.exchange.opendrive import ASSUMED
 from automotive_cosim.exchange.positions import RoadPositions
 from automotive_cosim.exchange.roads import OpenDriveRoad, mirror, read_roads
 from automotive_cosim.exchange.storyboard import ReadStory, ScriptEntity, Waited, read_story
@@ -152,6 +153,8 @@ def _for_netconvert(source: Path, ours: Path) -> tuple[bool, dict[str, bool]]:
     write_whole(ours, ET.tostring(root))
     stated: dict[str, bool] = {}
     for element in root.iter("road"):
+        if any(each.attrib == ASSUMED for each in element.iterfind("userData")):
+            continue
         for lane in element.iterfind("lanes/laneSection/*/lane"):
             name = f"{element.attrib['id']}_{lane.attrib['id']}"
             stated[name] = stated.get(name, True) and any(_offset_m(each) == 0 for each in lane.iter("speed"))

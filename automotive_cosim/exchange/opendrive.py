@@ -35,6 +35,8 @@ SHORT_M = 1e-6
 """By so much a curve is stated shorter than it is: readers that look for a place beyond its end find none."""
 NAMES = "--output.original-names"
 """Lets netconvert write the ids of SUMO's edges."""
+ASSUMED = {"code": "limit", "value": "assumed"}
+"""Data of a road whose limit no sign has."""
 POINT_M, ROOM_M = 0.01, 1.0
 """A shorter way through a junction is a point; the road before it ends this much earlier."""
 
@@ -79,17 +81,20 @@ def write_opendrive(net: Path, target: Path) -> None:
 
 
 def tell_access(root: ET.Element, network: ET.Element) -> None:
-    """Writes who may use a lane: who may not on one for cars, who may on any other.
+    """Writes who may use a lane: who may not on one for cars, who may on any other; and which limits no sign has.
 
     Args:
         root: netconvert's file with ``NAMES``; changed in place.
         network: of SUMO, from which it was made.
     """
-    edges = {edge.attrib["id"]: edge.findall("lane") for edge in network.iter("edge")}
+    edges = {edge.attrib["id"]: edge for edge in network.iter("edge")}
     for road in root.iter("road"):
         for named in road.findall("userData"):  # NAMES wrote them
             road.remove(named)
-            for lane, of_sumo in zip(reversed(_lanes(road)), edges[named.attrib["value"]], strict=True):
+            edge = edges[named.attrib["value"]]
+            if edge.find("param[@key='maxspeed']") is None:
+                ET.SubElement(road, "userData", ASSUMED)
+            for lane, of_sumo in zip(reversed(_lanes(road)), edge.findall("lane"), strict=True):
                 for_cars = open_to(of_sumo.attrib)
                 for vehicle_class, restriction in ACCESS.items():
                     if open_to(of_sumo.attrib, vehicle_class) is not for_cars:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from PIL import Image, ImageOps
 
-from automotive_cosim.cockpit.drawing import Canvas
+from automotive_cosim.cockpit.drawing import Canvas, fit
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
 from automotive_cosim.formats.files import read_bytes
@@ -204,14 +204,17 @@ def _draw_side(canvas: Canvas, box: Rect, side: PairSide, frame: FilmFrame, here
         head.right_part(160), amount_of_speed(here.speed_kmh, here.speed_unit), Type.STRONG, colour, "right"
     )
     canvas.picture(_screen(box), frame.cockpit, 14)
-    if frame.view is not None:
-        window = Rect(box.x, box.y + HEAD, box.width, VIEW)
+    notes = box.bottom_part(NOTES - 12)
+    is_last = frame.title == outcome(side.row)
+    window, room = Rect(box.x, box.y + HEAD, box.width, VIEW), notes.below(38).top(2 * Type.LABEL.pitch)
+    if is_last and fit(frame.words, Type.LABEL, room.width, 2, room.height)[2]:
+        room = window  # a long reason takes the place of the view
+    elif frame.view is not None:
         left, top, right, bottom = window.edges(SCALE)
         size = right - left, bottom - top
         canvas.picture(window, ImageOps.fit(frame.view, size, Image.Resampling.LANCZOS, centering=(0.5, 0.55)), 14)
-    notes = box.bottom_part(NOTES - 12)
-    is_last = frame.title == outcome(side.row)
     good = bool(side.row.success)
     title_colour = NIGHT.text if not is_last else NIGHT.good if good else NIGHT.jam
     canvas.text(notes.top(38), frame.title, Type.TITLE if is_last else Type.STRONG, title_colour)
-    canvas.text(notes.below(38).top(2 * Type.LABEL.pitch), frame.words, Type.LABEL, NIGHT.muted, lines=2)
+    most = room.height // Type.LABEL.pitch
+    canvas.text(room, frame.words, Type.LABEL, NIGHT.muted, lines=most)

@@ -252,6 +252,20 @@ def test_a_road_that_is_read_back_has_lanes_for_the_same_vehicles(tmp_path, sumo
         assert {each for each in ACCESS if lane.allows(each)} == classes
 
 
+def test_a_road_that_is_read_back_has_signs_where_it_had_them(tmp_path, sumo):
+    nodes = "".join(f"<node id='{at}' x='{300 * number}' y='0'/>" for number, at in enumerate("abc"))
+    (tmp_path / "a.nod.xml").write_text(f"<nodes>{nodes}</nodes>")
+    (tmp_path / "a.edg.xml").write_text(
+        "<edges><edge id='ab' from='a' to='b' speed='14'/>"
+        "<edge id='bc' from='b' to='c' speed='14'><param key='maxspeed' value='50'/></edge></edges>"
+    )
+    ok, printed = run("netconvert", ("-n", "a.nod.xml", "-e", "a.edg.xml", "-o", "a.net.xml"), tmp_path)
+    assert ok, printed
+    write_opendrive(tmp_path / "a.net.xml", tmp_path / "a.xodr")
+    posted = [edge.getParam("maxspeed") for edge in road_network(tmp_path / "a.xodr", tmp_path).getEdges()]
+    assert sorted(map(str, posted)) == ["50.4", "None"]
+
+
 def read_trajectories(path):
     """Kind and fields of each record of SSAM's format, by its specification."""
     layouts, data, at = (FORMAT, DIMENSIONS, TIMESTEP, VEHICLE), path.read_bytes(), 0
