@@ -165,7 +165,9 @@ class ModelAgent:
         text = prompt.turn(self._profile, seen, history, plan, self._recalled, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, text)
         action = schema_of(
-            self._profile.actions, None if seen.elements is None else prompt_parts.indices(seen.elements)
+            self._profile.actions,
+            None if seen.elements is None else prompt_parts.indices(seen.elements),
+            [each.name for each in self._profile.functions],
         )
         reply, asked = self._asking.ask(text, (*seen.sounds, *pictures), answer.schema(action))
         try:

@@ -159,10 +159,8 @@ _HANDS: Mapping[Interface, str] = {
     Interface.BOTH: "touch screen and functions",
 }
 """What an agent operates."""
-FUNCTIONS = (
-    'Functions for the action `call`, as in {"action_type": "call", "function": "set_hvac_temperature", '
-    '"arguments": {"which": "driver", "celsius": 21.5}}:'
-)
+FUNCTIONS = 'Functions to `call`: {"action_type": "call", "function": <name>, "arguments": {<argument>: <value>}}'
+"""Without an example, which small models call whatever the driver wants."""
 BEFORE_AND_AFTER = {
     (True, True): "Two pictures come with this text: the screen before the action and after it.",
     (True, False): "A picture comes with this text: the screen before the action.",

@@ -371,12 +371,13 @@ def json_schema() -> Json:
     }
 
 
-def schema_of(kinds: Collection[ActionType], indices: Sequence[int] | None) -> Json:
+def schema_of(kinds: Collection[ActionType], indices: Sequence[int] | None, called: Sequence[str] = ()) -> Json:
     """The actions of some kinds as a JSON Schema that servers turn into a grammar: fields in a fixed order, and a
     target given in one way.
 
     Args:
-        indices: those of the elements that can be acted on; None if a target is a point."""
+        indices: those of the elements that can be acted on; None if a target is a point.
+        called: names of the functions that can be called; any name, if none is given."""
     members = []
     for kind, takes in FIELDS.items():
         if kind not in kinds or (takes.target and indices is not None and not indices):
@@ -386,6 +387,8 @@ def schema_of(kinds: Collection[ActionType], indices: Sequence[int] | None) -> J
         schemas = {name: field_schema(name) for name in (*target, *takes.required, *optional)}
         if "index" in schemas:
             schemas["index"] = {"enum": list(indices or ())}
+        if "function" in schemas and called:
+            schemas["function"] = {"enum": list(called)}
         for axis in {"x", "y"} & schemas.keys():
             schemas[axis] |= {"minimum": 0, "maximum": DISTANCE_LIMIT_PX}
         members.append(

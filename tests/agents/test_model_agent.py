@@ -11,6 +11,7 @@ from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, ModelAge
 from automotive_cosim.agents.marks import png
 from automotive_cosim.agents.memory import Memory
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GoalStatus, Observation
+from automotive_cosim.contracts.given import Interface
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError, UserError
 from automotive_cosim.interface.controls import GeoInput
@@ -58,6 +59,17 @@ def play(agent_name: str, seen: Observation, most: int = 6) -> list[Action]:
     while len(actions) < most and (not actions or actions[-1].action_type is not ActionType.STATUS):
         actions.append(made.act(seen))
     return actions
+
+
+def test_an_answer_can_only_call_what_is_offered(agent, observation):
+    made, model = agent(DONE, conditions=Conditions(interface=Interface.FUNCTIONS))
+    made.act(observation("Watch my speed"))
+    form, text = model.asked[0].form, model.asked[0].text
+    kinds = form["properties"]["action"]["anyOf"]
+    (called,) = (kind["properties"]["function"]["enum"] for kind in kinds if "function" in kind["properties"])
+    assert "set_hvac_temperature" in called
+    assert all(f"- {name}(" in text for name in called)
+    assert '"function": "' not in text, "small models call an example whatever is asked for"
 
 
 # --- with the rule model: the prompt carries the information --------------------------------------------------
