@@ -159,7 +159,9 @@ _HANDS: Mapping[Interface, str] = {
     Interface.BOTH: "touch screen and functions",
 }
 """What an agent operates."""
-FUNCTIONS = 'Functions to `call`: {"action_type": "call", "function": <name>, "arguments": {<argument>: <value>}}'
+FUNCTIONS = (
+    'Functions for the action `call`: {"action_type": "call", "function": <name>, "arguments": {<key>: <value>}}'
+)
 """Without an example, which small models call whatever the driver wants."""
 BEFORE_AND_AFTER = {
     (True, True): "Two pictures come with this text: the screen before the action and after it.",
