@@ -8,14 +8,14 @@ from pathlib import Path
 
 from PIL import Image, ImageDraw
 
-from automotive_cosim.cockpit.drawing import Canvas
+from automotive_cosim.cockpit.drawing import Canvas, fit
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type, Weight, font
 from automotive_cosim.formats.layout import FILM
 from automotive_cosim.formats.layout import ROAD as ROAD_FILE
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmroad import RoadPainter, draw_road_sign
-from automotive_cosim.report.frames import SAME_TIME_S, FilmFrame, Frames, save_animation
+from automotive_cosim.report.frames import LAST_MS, SAME_TIME_S, FilmFrame, Frames, save_animation
 from automotive_cosim.report.plot import SpeedAxis
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.road import EMPTY, read_record
@@ -193,11 +193,16 @@ def _info(canvas: Canvas, frame: FilmFrame, here: Sample) -> None:
     inner = INFO.inset(18, 12)
     over = is_over(here.speed_kmh, here.limit_kmh)
     colour = NIGHT.warning if over else NIGHT.text
-    speed, unit = amount_of_speed(here.speed_kmh, here.speed_unit).split()
-    canvas.text(inner.top(52).left(84), speed, Type.DISPLAY, colour)
-    canvas.text(Rect(inner.x + 88, inner.y + 16, 80, 36), unit, Type.LABEL, NIGHT.muted)
-    clock = f"{'−' if frame.at_s < -SAME_TIME_S else '+'}{abs(frame.at_s):.0f} s"
-    canvas.text(inner.top(52).right_part(120), clock, Type.TITLE, NIGHT.muted, "right")
-    canvas.text(Rect(inner.x, inner.y + 60, inner.width, 34), frame.title, Type.STRONG, NIGHT.text)
-    words = Rect(inner.x, inner.y + 96, inner.width, inner.bottom - inner.y - 96)
+    title = Rect(inner.x, inner.y + 60, inner.width, 34)
+    words = inner.below(96)
+    is_last = frame.milliseconds == LAST_MS
+    if is_last and fit(frame.words, Type.CAPTION, words.width, 3, words.height)[2]:
+        title, words = inner.top(34), inner.below(36)  # a long reason takes the place of the speed
+    else:
+        speed, unit = amount_of_speed(here.speed_kmh, here.speed_unit).split()
+        canvas.text(inner.top(52).left(84), speed, Type.DISPLAY, colour)
+        canvas.text(Rect(inner.x + 88, inner.y + 16, 80, 36), unit, Type.LABEL, NIGHT.muted)
+        clock = f"{'−' if frame.at_s < -SAME_TIME_S else '+'}{abs(frame.at_s):.0f} s"
+        canvas.text(inner.top(52).right_part(120), clock, Type.TITLE, NIGHT.muted, "right")
+    canvas.text(title, frame.title, Type.STRONG, NIGHT.text)
     canvas.text(words, frame.words, Type.CAPTION, NIGHT.muted, lines=3)

@@ -87,7 +87,10 @@ class _Loops:
 
 
 def planned(network: Network, first: Trip, onward: Sequence[Trip], loops: _Loops | None = None) -> Round:
-    """The round of some trips on a network, and what is known of its loops.
+    """The round of some trips on a network.
+
+    Args:
+        loops: those of the network, if some are known; searched if left out.
 
     Raises ScenarioError: one of them has no route, or no route leads from it to the others."""
     ways = [_way(network, trip) for trip in (first, *onward)]
